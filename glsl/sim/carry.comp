@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Moves a solver's state as one rigid body, and gives it the velocity of one:
-// With BOUND 1 by a motion for each strand.
-//     x' = R x + T,    v' = R v + V + W x x',    d' = R d    (points, their velocities, directions)
+// Moves a solver's state as one rigid body, and gives it that body's velocity. BOUND 1: each
+// strand has a motion of its own. For points, their velocities and directions:
+//     x' = R x + T,    v' = R v + V + W x x',    d' = R d
 #include "sim/carry_params.h"
 #include "common/rigid.glsl"
 

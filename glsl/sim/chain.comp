@@ -2,26 +2,28 @@
 // A step of `chain`: rigid segments by direct solves, second order in dt.
 //
 // Segments r_j = q_j - q_{j-1} at the step's start with lengths l_j; predicted positions p_j
-// (kicked, drawn to the style), s_j = p_j - p_{j-1}.
+// (after the kick and the springs of the style), s_j = p_j - p_{j-1}.
 //   1. Tensions: lambda_j from the constraint linearised about the old directions (Han, Harada:
-//      Tridiagonal Matrix Formulation for Inextensible Hair Strand Simulation, VRIPHYS 2013), J J^T
-//      lambda = l (|s| - l) with J J^T = tridiag(-r_j.r_{j-1}, 2 |r_j|^2; |r_1|^2).
-//   2. Positions: x = p - g_j + g_{j+1}, where pushing (lambda-) acts along r, and pulling
-//      (lambda+) along directions taken implicitly as in Newmark's method with theta = 1/4, 1/4 new
-//      + 1/2 now + 1/4 before: second order, and no tension is too stiff. That is (I + theta
-//      Laplacian(lambda+)) x = y, again tridiagonal. What is much stiffer than the step would swing
-//      to -3, 5, -7 .. of where it was, which only small swings survive: theta grows to 1/2 with
-//      tensions above STIFF, where it stays at plus or minus.
-//   3. Twice: what lengths are still off is taken out along the current directions, J J^T lambda =
-//      |s| (|s| - l), x_j -= lambda_j s_j, x_{j-1} += lambda_j s_j, done on the segments
+//      Tridiagonal Matrix Formulation for Inextensible Hair Strand Simulation, VRIPHYS 2013), J
+//      J^T lambda = l (|s| - l) with J J^T = tridiag(-r_j.r_{j-1}, 2 |r_j|^2; |r_1|^2).
+//   2. Positions: x = p - g_j + g_{j+1}, with the impulses g of the tensions. Compression
+//      (lambda-) acts along r. Tension (lambda+) acts along directions taken implicitly by
+//      Newmark's method with theta = 1/4 (1/4 new + 1/2 now + 1/4 before). This is second order,
+//      and no tension is too stiff: (I + theta Laplacian(lambda+)) x = y, again tridiagonal. A
+//      segment that is much stiffer than the step would swing to -3, 5, -7 .. times its amplitude,
+//      which only small swings survive. So theta grows to 1/2 with tensions above STIFF; the
+//      amplitude then stays the same.
+//   3. Twice: correct the remaining length errors along the current directions, J J^T lambda = |s|
+//      (|s| - l), x_j -= lambda_j s_j, x_{j-1} += lambda_j s_j, applied to the segments
 //      themselves.
-//   4. Rebuild from the root with exact lengths.
+//   4. Rebuild the strand from the root with exact lengths.
 // Where a violent step leaves a segment off by more than half its length, two passes of tractrices
-// take over (rescue). Long strands at long steps would gain energy from either:
-// energy_account.glsl. BENDS 1: bend.glsl's forces and masses enter the second system.
+// replace this (rescue). Long strands at long steps would gain energy by either way;
+// energy_account.glsl limits that. BENDS 1: the forces and masses of bend.glsl enter the second
+// system.
 //
-// The sweeps run along the strand to and fro; each undoes one elimination and does the next.
-// Positions are relative to the new root.
+// The sweeps run along the strand in alternating directions; each sweep does the back substitution
+// of one elimination and the elimination of the next. Positions are relative to the new root.
 #include "sim/chain_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"

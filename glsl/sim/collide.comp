@@ -1,37 +1,39 @@
 // SPDX-License-Identifier: MIT
-// Pushes hair out of the colliders, a strand from root to tip, after the solver's
-// step.
+// Pushes hair out of the colliders after the solver's step, each strand from root to tip.
 //
-// Particle j of a strand, where the solver has put it at x, follows the one before, which this pass
-// may have moved to p, by reaching from there to x at the same length l. No particle moves further
-// than the one before it. If it is deeper than it may be (`need` is the distance it should have),
-// the link turns about p: with the surface's normal n, the direction d' with n.d' = n.d + depth/l
-// and the rest along the tangent of d puts a particle on a plane exactly, on a curved surface after
-// a few rounds (Newton's method). So lengths stay as they are, and hair at rest comes back to the
-// same place in every step.
+// Let x be the position that the solver gave to particle j, and p the position of the particle
+// before it, which this pass may have moved. Particle j keeps its distance l: it goes from p
+// towards x by l. So no particle moves farther than the particle before it. `need` is the distance
+// from the collider that a particle should have. If the particle is too deep, the link turns about
+// p. With the surface's normal n, the new direction d' has n.d' = n.d + depth/l and the rest along
+// the tangent of d. This puts a particle exactly on a plane, and on a curved surface after a few
+// rounds (Newton's method). So lengths stay the same, and hair at rest comes back to the same
+// place in every step.
 //
-// Friction is Coulomb's. In a position: of the way that the particle has come along the surface
-// since the step before, as much is undone as friction times the depth that is pushed out, at most
-// all of it; what rests would otherwise creep by g dt^2 a step. In a velocity: the part that goes
-// into the surface is taken out, and along the surface at most friction times as much, both
-// relative to the surface: nothing gains speed but by what pushes it. Particles that only follow
-// keep their velocity. (Giving them the displacement over dt, all or what stops them, made styled
-// strands that lie on a sphere flutter for ever.)
+// Friction is Coulomb's.
+// - Positions: of the way that the particle has come along the surface since the step before, a
+//   part is undone: friction times the depth that is pushed out, at most all of the way. Otherwise
+//   hair at rest would creep by g dt^2 a step.
+// - Velocities, relative to the surface: the part into the surface is removed, and along the
+//   surface at most friction times as much. Nothing gains speed except by the push itself.
+// - Particles that move only because the particle before them was pushed keep their velocity.
+//   (Giving them the displacement over dt, all of it or only what slows them down, made styled
+//   strands that lie on a sphere flutter for ever.)
 //
-// Roots may lie inside. A root that does stays there, and the distance that is needed grows with
-// the arc length from the root. A groom that is at rest (CLEARANCE 1) keeps what is nearer to a
-// collider than the margin: a particle needs the margin, or the distance that it has in the groom
-// where that is less (its clearance), inside as well as outside. So contacts at rest do not push.
+// A root may lie inside a collider. It stays there, and the needed distance of the other particles
+// grows with the arc length from the root. In a groom at rest (CLEARANCE 1), a particle may be
+// nearer to a collider than the margin: it needs the margin or its clearance, the distance that it
+// has in the groom (negative inside), whichever is less. So contacts at rest do not push.
 //
 // MODE 0: positions and velocities
 // MODE 1: unit directions and the tip (split)
-// MODE 2: positions that are drawn, neither velocity nor friction
-// MODE 3: pushes nothing: finds the clearances of positions in the head's frame, once
+// MODE 2: drawn positions, without velocities and friction
+// MODE 3: pushes nothing; computes the clearances, once, from positions in the head's frame
 // CLEARANCE 1: particles have clearances; MODE 0 and 2
-// CONES: how many cones there are, or 0: any number
+// CONES: number of cones (spheres and capsules) in registers, or 0: any number, fetched
 // FIELD 1: one more collider, a mesh (distance_field.glsl)
 // BOUND 1: strands grow on a mesh that deforms
-// ORDERED: see particles.glsl; here, too, a lane fetches what is its strand's, before it stores
+// ORDERED: see particles.glsl; here, too, a lane fetches the values of its strand before it stores
 // there
 #include "sim/collide_params.h"
 #include "common/hair_address.glsl"

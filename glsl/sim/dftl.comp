@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Dynamic follow-the-leader (Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and Fur,
-// VRIPHYS 2012).
+// Dynamic follow-the-leader (Mueller, Kim, Chentanez: Fast Simulation of Inextensible Hair and
+// Fur, VRIPHYS 2012).
 //
 // From the root on, every particle is predicted, p = x + v dt, and put at its length from its
 // leader, x' = leader + l (p - leader)/|p - leader|. That alone acts as if all mass sat at the
-// leader; so the velocity gets back what the follower's correction d' took:
+// leaders. So the velocity gets back what the follower's correction d' took:
 //     v_i = (x'_i - x_i)/dt - s d'_{i+1}/dt,      s: ftl_damping
-// What is stored is the velocity of the drawn strand, u = (x'_i - x_i)/dt, and in its fourth
-// component s d'_{i+1}/dt as a share of the segment, along which it lies.
+// The stored velocity is that of the drawn strand, u = (x'_i - x_i)/dt. Its fourth component is s
+// d'_{i+1}/dt as a share of the segment; d' lies along the segment.
 //
-// STYLED 1: before that, p is drawn to the style (style_spring.h).
+// STYLED 1: before that, p is pulled towards the style (style_spring.h).
 //
-// GUARDED 1: the drawn strand keeps no energy that corrections give it (energy_account.glsl).
-// Nearly always the next step pays, and no particle is visited twice: where the strand has gained
-// more than PAID_ABOVE of what gravity could give to it, and of what it has, its velocities count
-// less by the share `paid`, towards the root's, when the next step begins. That step gives about as
-// much as this one before it can pay, so that much is paid ahead. `paid` stands in the fourth
-// component of the tip's velocity.
+// GUARDED 1: corrections do not add energy to the drawn strand (energy_account.glsl). Nearly
+// always the next step pays for the energy, so no particle is visited twice. If the strand has
+// gained more than PAID_ABOVE of what gravity could give to it, and of the energy that it has, its
+// velocities are reduced by the share `paid`, towards the root's velocity, when the next step
+// begins. That next step is expected to add about as much energy as this step did, before it can
+// pay, so that much is paid in advance. `paid` is stored in the fourth component of the tip's
+// velocity.
 #include "sim/dftl_params.h"
 #include "sim/particles.glsl"
 #include "sim/strand.glsl"

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// A step of `emulation`: every particle is pulled to where it wants to go, and both sides of the
-// strand follow as tractrices. O(n^2).
+// A step of `emulation`: every particle is pulled to its target, and both sides of the strand
+// follow as tractrices. O(n^2).
 //
-//   1. where particles want to go, p: midpoint.glsl
-//   2. in a random order, the same for all strands and steps: pull particle i to p_i, tip's side
-//      and root's side follow. With the first of them every segment follows as seen from its tail's
-//      own p, which moves along (as in hybrid.comp), so that the others have little left to go and
-//      it hardly matters in which order
-//   3. pull the root to where the head carries it
-//   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl). Second
-//      order
-// THESIS: order from root to tip, predictions by a kick alone, and as published v = (x - q)/dt + k
-// (style - x) dt. That is unstable: hair without drag speeds up to 3 .. 14 m/s by itself.
+//   1. Targets p of the particles: midpoint.glsl.
+//   2. In a random order, which is the same for all strands and steps: pull particle i to p_i; the
+//      strand follows on the tip's side and on the root's side. In the first pull every segment
+//      follows in the frame of its own tail's target, which moves (as in hybrid.comp). The other
+//      pulls then have little left to do, and their order hardly matters.
+//   3. Pull the root to where the head carries it.
+//   4. Velocities: projected on what the new shape allows, energy balanced (constrain.glsl).
+//      Second order.
+// THESIS: as published. The order is from root to tip, targets come from a kick alone, and v = (x
+// - q)/dt + k (style - x) dt. This is unstable: hair without drag speeds up to 3 .. 14 m/s by
+// itself.
 //
-// State of the pulls: unit directions d (j - 1 to j) with lengths. Where the particle that is
-// pulled next has come to is summed up on the way. A step of long strands takes several dispatches
-// (step_params.phase), each with MOST_LINKS links to turn.
+// State of the pulls: unit directions d (from j - 1 to j) with lengths. A pull sums up on its way
+// the position of the particle that is pulled next. A step of long strands takes several
+// dispatches (step_params.phase), each with MOST_LINKS links to turn.
 #include "sim/emulation_params.h"
 #include "sim/particles.glsl"
 #include "sim/keep.glsl"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where followers are (follow_plan.h): beside their guide, or between three of them. A strand a
-// lane; those of a guide lie side by side. CLUMPS 1: they gather on it towards the tip.
+// Computes the followers' positions (follow_plan.h): beside their guide, or between three guides.
+// One strand a lane; the followers of a guide lie side by side. CLUMPS 1: followers approach their
+// guide towards the tip.
 #include "sim/follow_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Positions strand by strand, for those who know no tiles.
+// Copies positions strand by strand, for readers that do not know the tiled layout (hair.h).
 #include "sim/gather_params.h"
 #include "common/hair_address.glsl"
 

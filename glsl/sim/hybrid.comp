@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A step of `hybrid`: tractrices as the length constraint, in two passes instead of the emulation's
-// n. Second order.
+// A step of `hybrid`: tractrices as the length constraint, in two passes instead of the n pulls of
+// `emulation`. Second order.
 //
-//   1. where particles want to go, p: midpoint.glsl
-//   2. tip to root: every segment follows its tip's new place as a tractrix, seen from its root
-//      end's own p, which moves along
-//   3. root to tip: the root is pulled home, the strand follows
-//   4. velocities: projected on what the new shape allows, energy balanced (constrain.glsl)
+//   1. Targets p of the particles: midpoint.glsl.
+//   2. Tip to root: every segment follows its tip's new place as a tractrix, in the frame of its
+//      root end's target, which moves.
+//   3. Root to tip: the root is pulled home, and the strand follows.
+//   4. Velocities: projected on what the new shape allows, energy balanced (constrain.glsl).
 //
-// It is the tractrices that make long steps calm: with directions of p alone, or with one pass, the
+// The tractrices keep long steps calm: with the directions of p alone, or with one pass, the
 // energy of loose strands rises without end.
 #include "sim/hybrid_params.h"
 #include "sim/particles.glsl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The strand between two steps: straight lines in the head's frame, so that roots stay where the
-// head has them (BOUND 1: the mesh). A segment that turns by an angle a from step to step is drawn
-// shorter by a^2/8 at most: 1 % at 16 degrees.
+// The strand between two steps. Particles move on straight lines in the head's frame, so that
+// roots stay on the head (BOUND 1: on the mesh). A segment that turns by an angle a from step to
+// step is drawn shorter by at most a^2/8: 1 % at 16 degrees.
 #include "sim/inbetween_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"

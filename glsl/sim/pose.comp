@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The strand that is drawn: rebuilt from the root, every direction turned by a share of the angle
-// from the physical one to the style's.
+// The strand that is drawn. It is rebuilt from the root; every direction is turned from the
+// simulated direction towards the style's, by a share of the angle between them.
 //   MIX 0: the style alone
-//   MIX 1: the physical strand alone
-//   MIX 2: nearer to the physical strand
-//   MIX 3: nearer to the style
+//   MIX 1: the simulated strand alone
+//   MIX 2: both, nearer to the simulated strand
+//   MIX 3: both, nearer to the style
 //   MIX 4: by a share that differs along the strand
-// HANGS 1: at rest the physical strand hangs straight down, along `hanging`, and the style is what
-// is drawn. So the style's segment is turned by the rotation that takes `hanging` to what is a
-// share of the way from there to the physical segment.
-// FADES 1 (with MIX 4): as the style changes over time, what it holds fades, and the physical
-// strand is drawn.
-// BOUND 1: the mesh carries each strand by a frame of its own; `hanging` is in that.
+// HANGS 1: at rest the simulated strand hangs straight down, along `hanging`, and the style is
+// drawn. In motion, take the direction at a share of the way from `hanging` to the simulated
+// segment; the rotation from `hanging` to that direction turns the style's segment.
+// FADES 1 (with MIX 4): as the style changes over time, it holds less of gravity, and the
+// simulated strand is drawn instead.
+// BOUND 1: the mesh carries each strand in a frame of its own; `hanging` is a direction in that
+// frame.
 #include "sim/pose_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Position-based rope: particles fly, then sweeps over the links from root to tip move the two ends
-// of each towards its length.
+// Position-based rope: particles fly, then sweeps over the links from root to tip move the two
+// ends of each link towards the link's length.
 //
-// BULLET 1: as btSoftBody::PSolve_Links (Bullet 2 and 3) does it, with all sweeps at the end of one
-// step. A link with ends a, b of weights w (the root's is 0, the others' 1), r = b - a and rest
-// length l:
+// BULLET 1: as btSoftBody::PSolve_Links (Bullet 2 and 3), with all sweeps at the end of one step.
+// A link with ends a, b of weights w (0 for the root, 1 for others), r = b - a and rest length l:
 //     k = (l^2 - r.r) / ((w_a + w_b) (l^2 + r.r)),    a -= w_a k r,  b += w_b k r
-// To first order in the stretch that is the usual projection, without a root; far off it
-// overshoots.
+// To first order in the stretch this is the usual projection, without a square root; at large
+// stretch it overshoots.
 //
-// BULLET 0: XPBD by small steps (Macklin, Mueller, Chentanez: XPBD, MIG 2016; Macklin et al.: Small
-// Steps in Physics Simulation, SCA 2019): each sweep ends a step of its own, so that the multiplier
-// starts at 0. With the compliance alpha and the small step h,
+// BULLET 0: XPBD in small steps (Macklin, Mueller, Chentanez: XPBD, MIG 2016; Macklin et al.:
+// Small Steps in Physics Simulation, SCA 2019). Each sweep ends a small step of its own, so the
+// multiplier starts at 0. With the compliance alpha and the small step h,
 //     lambda = (l - |r|) / (w_a + w_b + alpha/h^2),   a -= w_a lambda r/|r|,  b += w_b lambda r/|r|
 //
-// Then v = (1 - damping) m/h, m: all that the particle has gone by in the small step, flight and
-// sweeps. To take m for x - q, q the position before the flight, would round it like x, by the size
-// X of coordinates: 2^-24 X, in each of small steps in which gravity gives g h^2. So each move is
-// added to m as well as to x. (Of 1 m/s2 drag, 12,000 small steps a second were off by 0.015 of the
-// length after 2 s, now 4e-6.)
+// Then v = (1 - damping) m/h, where m is the particle's whole displacement in the small step, by
+// flight and sweeps. m is not computed as x - q, with the position q before the flight: that
+// difference has the rounding error of x, 2^-24 X for coordinates of size X, in each small step,
+// while gravity contributes only g h^2. So each move is added to m as well as to x. (With 12,000
+// small steps a second and drag 1/s, the difference was off by 0.015 of the length after 2 s; the
+// sum is off by 4e-6.)
 //
-// For the same reason coordinates are from where the root was at the step's start: sweeps see the
-// rounding of x. (Five metres off the origin, 81 small steps of 1/60 s trembled by 0.0045 of their
-// length a step.)
+// For the same reason coordinates are relative to the root's position at the step's start: sweeps
+// see the rounding of x. (Five metres off the origin, 81 small steps in 1/60 s trembled by 0.0045
+// of their length a step.)
 //
-// STYLED 1: after each flight particles are drawn to the style (style_spring.h). A rope stretches;
-// see stretch.glsl for what is drawn.
+// STYLED 1: after each flight particles are pulled towards the style (style_spring.h). A rope
+// stretches; stretch.glsl says how it is drawn.
 #include "sim/particles.glsl"
 #include "sim/rope_params.h"
 #include "sim/stretch.glsl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Checks whether strands are calm (sleep.h): each particle within `leave` of its anchor, and no
-// farther from it than it has been before. If not, they begin anew, those that have left their
-// anchor with another one. A strand a lane.
+// Checks whether strands are calm (sleep.h): each particle must be within `leave` of its anchor,
+// and no farther from it than before by more than `grow`. A strand that is not calm starts
+// counting again; if it has left its anchors, with new anchors. One strand a lane.
 #include "sim/sleep_params.h"
 #include "common/hair_address.glsl"
 

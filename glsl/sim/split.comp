@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // A step of `split`: the tip is a mass, and the strand follows it as a chain of tractrices.
 //
-//   1. Kick the tip; where it flies to is the target.
-//   2. Pull the strand's end to the target: every tail is the next head    (tip -> root).
-//   3. Pull the root back to where the head carries it                     (root -> tip).
-//      2 and 3 again: the second round takes the end nearer to the target.
-//   4. Mix: the drawn directions are turned towards the style's (pose.comp).
+//   1. Kick the tip. The place to which it flies is the target.
+//   2. Pull the strand's end to the target, from tip to root: the tail of each segment is the head
+//      of the next.
+//   3. Pull the root back to where the head carries it, from root to tip. Then 2 and 3 again: the
+//      second round brings the end nearer to the target.
+//   4. Pose: turn the drawn directions towards the style's (pose.comp).
 //
-// State: unit directions of the segments with their rest lengths (j > 0 from particle j - 1 to j),
-// and the tip. All moves are seen from the root, which carries the strand along, so that a head at
-// constant speed is like one at rest. DRAGGED 1 are the published rules: split_published.glsl.
+// State: unit directions of the segments with their rest lengths (segment j > 0 goes from particle
+// j - 1 to j), and the tip. All moves are relative to the root, which carries the strand along, so
+// a head at constant speed is like a head at rest. DRAGGED 1: the published rules,
+// split_published.glsl.
 #include "sim/split_params.h"
 #include "sim/step_params.h"
 #include "common/hair_address.glsl"

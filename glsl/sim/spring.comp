@@ -2,43 +2,44 @@
 // Mass-spring strand: particles of mass 1, coil springs along the links, angular springs across
 // them.
 //
-// A link r = x_j - x_{j-1} = m u (m = |r|) with rest length l pulls at the particle at its end, and
-// the other way at the one before, by
+// A link r = x_j - x_{j-1} = m u (m = |r|) with rest length l exerts on the particle at its end
+// the force F, and on the particle before it -F:
 //     F = -k/2 (m - l) u + b theta e
-// with theta the angle from u to the style's direction t, e perpendicular to u, towards t: Hooke's
-// law with half the coil's force for either end (k), and for the angle (b). Springs in a row: K =
-// k/(n-1)^2 is the stiffness of a strand of n - 1 links, B = b/(n-1) what its weight works against,
-// so that K and B mean the same for any n. b <= k l/8: a short link shall not be stiffer across
-// than along.
+// theta is the angle from u to the style's direction t; e is perpendicular to u, towards t. The
+// first term is Hooke's law with half the coil's force for either end; the second is the same for
+// the angle. Springs in a row: K = k/(n-1)^2 is the stiffness of a strand of n - 1 links, and B =
+// b/(n-1) the stiffness against its weight, so K and B mean the same for any n. b <= k l/8: a
+// short link must not be stiffer across than along.
 //
 // IMPLICIT 0, symplectic Euler: v' = e^{-ch} v + (g + c w + F_j - F_{j+1}) h f (forces.glsl), then
-// r' = r + h (v'_j - v'_{j-1}). Nothing damps it, so F must have a potential, and one that is
-// smooth on the scale that a link moves on in a sub-step. That above is and has neither: of a link
-// that stretches and shrinks at different angles the angular force takes work again and again; near
-// m = 0 the coil's force turns over with u, and at theta = pi the angular one. With e = SHORT
-// L/(n-1), l' = max(l, e) and phi = theta^2/2 therefore
+// r' = r + h (v'_j - v'_{j-1}). Nothing damps it, so F must have a potential, and the potential
+// must be smooth on the scale of a link's move in a sub-step. F above has neither property. A link
+// that stretches and shrinks at different angles extracts work from the angular force again and
+// again. Near m = 0 the coil's force changes its direction with u, and at theta = pi the angular
+// force does. Therefore, with e = SHORT L/(n-1), l' = max(l, e) and phi = theta^2/2,
 //     U = k/4 (M - l')^2 + b' m^2/(m^2 + e^2) phi,
 //     M^2 = m^2 + l'^2 - l^2,    b' = min(b, k l^3/8/(l^2 + e^2)) (l^2 + e^2)/l
 //     F = -dU/dr = -k/2 (1 - l'/M) r - 2 b' phi m e^2/(m^2 + e^2)^2 u + b' phi' m/(m^2 + e^2) e
-// which is the same at m = l, but for the second term (there b theta^2 e^2/(l^2 + e^2), 0.06 b
-// theta^2 in an average link), for links below e, which are softer, and for angles above 135
-// degrees, where phi' = 3 (pi - theta). No derivative of the coil's part is beyond k/2.
+// This equals the F above at m = l, with three exceptions: the second term (at m = l it is b
+// theta^2 e^2/(l^2 + e^2), 0.06 b theta^2 in an average link); links shorter than e, which are
+// softer; and angles above 135 degrees, where phi' = 3 (pi - theta). No derivative of the coil's
+// part exceeds k/2.
 //
 // IMPLICIT 1, backward Euler, linearised at the step's start (Baraff, Witkin: Large Steps in Cloth
 // Simulation, SIGGRAPH 1998), so that rest states are exact at any step. Without springs the
-// particles would fly at v* (forces.glsl) and the link become r + w, w = h (v*_j - v*_{j-1}). With
-// the stiffness matrices H = h^2 f (k/2 u u^T + (k/2 |1 - l/m| + b/l) (1 - u u^T)) = q + sigma u
-// u^T they are displaced from there by x, x_0 = 0:
+// particles would fly at v* (forces.glsl), and the link would become r + w, w = h (v*_j -
+// v*_{j-1}). The stiffness matrices are H = h^2 f (k/2 u u^T + (k/2 |1 - l/m| + b/l) (1 - u u^T))
+// = q + sigma u u^T. The particles are displaced from their free flight by x, with x_0 = 0:
 //     x_j + H_j (x_j - x_{j-1}) - H_{j+1} (x_{j+1} - x_j) = z_j - z_{j+1},    z = h^2 f F(r) - H w
-// (Across a link shorter than l a coil's stiffness is negative, k/2 (1 - l/m). Its absolute value,
-// at most k/2, keeps the matrix positive.) From the tip on eliminate x_j = S^{-1} (z + d + H
-// x_{j-1}), S = M + H: what is beyond the link acts on its end as M and d, M = 1, d = 0 at the tip,
-// and then
+// (Across a link shorter than l the coil's stiffness k/2 (1 - l/m) is negative. Its absolute
+// value, at most k/2, keeps the matrix positive.) Eliminate from the tip on: x_j = S^{-1} (z + d +
+// H x_{j-1}), S = M + H. M and d describe how the part beyond the link acts on its end; M = 1, d =
+// 0 at the tip, and then
 //     M <- 1 + M S^{-1} H,    d <- d - M S^{-1} (z + d)
-// With A = M + q, g = A^{-1} u, a = M g, tau = sigma/(1 + sigma u.g), Sherman's and Morrison's
-// formula gives forms that do not cancel for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T, M
-// S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y); S^{-1} is the same without
-// the M, g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
+// With A = M + q, g = A^{-1} u, a = M g and tau = sigma/(1 + sigma u.g), the Sherman-Morrison
+// formula gives forms without cancellation for stiff springs: M S^{-1} H = q M A^{-1} + tau a a^T,
+// M S^{-1} u = a/(1 + sigma u.g), M S^{-1} y = M A^{-1} y - tau a (g.y). S^{-1} is the same
+// without the M, with g for a. So x_j = C x_{j-1} + S^{-1} (z + d), C = q A^{-1} + tau g a^T.
 #include "common/shared_math.h"
 #include "sim/particles.glsl"
 #include "sim/spring_params.h"

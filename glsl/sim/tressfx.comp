@@ -2,35 +2,40 @@
 // TressFX's constraints (AMD TressFX 4; Han, Harada: Real-time Hair Simulation with Efficient Hair
 // Style Preservation, VRIPHYS 2012).
 //
-// The head carries vertices 0 and 1; the others are predicted, x* = x + dt (v decay + g gain), and
-// corrected:
+// The head carries vertices 0 and 1. The other vertices are predicted, x* = x + dt (v decay + g
+// gain), and corrected:
 //   shock    a share of the rigid motion of the root's segment moves the whole strand (all of it
-//            where the root is jerked)
-//   global   towards the style's position, the first `range` of the vertices
+//   where the root is jerked)
+//   global   the first `range` of the vertices move towards the style's position
 //   local    with R_j, the smallest rotation from the style's segment j to the strand's, segment
-//            j+1 should be b_{j+1} = R_j r_{j+1}
+//   j+1 should be b_{j+1} = R_j r_{j+1}
 //   lengths
 //
 // TRESSFX4 1: as published. Each local pass moves, from the root on, both ends of a segment by a
-// share of the gap b - s; each pass of the lengths moves both ends of every second edge, then of
-// the others. What a stiffness does depends on passes and dt.
+// share of the gap b - s. Each pass of the lengths moves both ends of every second edge, then of
+// the others. The effect of a stiffness depends on passes and dt.
 //
-// TRESSFX4 0 (`steady`): the same local passes; their share is chosen such that the stiffness does
-// not (solver_tressfx.c). Lengths: Newton's method, J J^T lambda = |s| (|s| - l), tridiagonal,
-// tells by how much of itself each segment s must draw its ends together. Along s as it is that
-// would be y_j = x_j - lambda_j s_j + lambda_{j+1} s_{j+1}: under the strand's weight lambda is up
-// to n g dt^2/l, and a segment turns by 4 lambda times what it is off from where the tension turns
-// it to, to and fro in each step where that is much more than 1. So tension draws along the
-// segments that it leaves: (I + K) y = x, (K y)_j = lambda_j (y_j - y_{j-1}) - lambda_{j+1}
-// (y_{j+1} - y_j), tridiagonal and positive definite, which turns nothing beyond that for any
-// lambda. Where lambda is negative it pushes, along s. All that twice; a second step along s would
-// let long loose strands gain half of what they can fall. Then each segment gets its length. v = (x
-// - x_before)/dt. Where segment j+1 should be follows segment j, which takes no reaction: these
-// forces have no potential, K of x'' = -K x is not symmetric, and eigenvalues w^2 (1 + i e) of it
-// gain about e w/2 per second. A long step damps that by w^2 dt/2. So that a short one does not
-// flutter either, neighbours exchange a share X of what their velocities differ by before they fly,
-// v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j: momentum stays, energy falls for any X < 1. A
-// joint alone would oscillate by W^2 = 2 passes local_share/dt^2; X = W dt damps it critically.
+// TRESSFX4 0 (`steady`): the same local passes, but their share is chosen such that the stiffness
+// does not depend on passes and dt (solver_tressfx.c).
+//
+// Lengths: Newton's method, J J^T lambda = |s| (|s| - l), tridiagonal, gives the share by which
+// each segment s must shorten. Moving along s as it is would be y_j = x_j - lambda_j s_j +
+// lambda_{j+1} s_{j+1}. Under the strand's weight lambda is up to n g dt^2/l, and a segment would
+// turn by 4 lambda times its deviation from the direction of the tension: to and fro in each step
+// if that is much more than 1. So tension acts along the segments that it leaves: (I + K) y = x,
+// (K y)_j = lambda_j (y_j - y_{j-1}) - lambda_{j+1} (y_{j+1} - y_j), tridiagonal and positive
+// definite. This turns no segment beyond the direction of the tension, for any lambda. Negative
+// lambda pushes along s. All this is done twice; if the second time moved along s, long loose
+// strands would gain half of the energy that they can release by falling. Then each segment gets
+// its exact length. v = (x - x_before)/dt.
+//
+// Exchange of velocity: the target of segment j+1 follows from segment j, but segment j feels no
+// reaction. So these forces have no potential, K of x'' = -K x is not symmetric, and its
+// eigenvalues w^2 (1 + i e) gain about e w/2 per second. A long step damps that by w^2 dt/2. So
+// that a short step does not flutter either, neighbours exchange a share X of their velocity
+// difference before they fly: v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j. This keeps momentum,
+// and energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes
+// local_share/dt^2; X = W dt damps it critically.
 #include "sim/particles.glsl"
 #include "sim/tressfx_params.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Particles take the change of their cell's velocity, and a share of the way to that. A strand a
-// lane.
+// Particles take the velocity change of their cell, and a share of the way to the cell's velocity.
+// One strand a lane.
 //
-// SEGMENTS 1: `split`: the tip's change is the one whose shares come closest to what the particles
-// of the drawn strand would take (least squares)
+// SEGMENTS 1: for `split`. The tip's change is the one that fits the changes of the drawn strand's
+// particles best (least squares), as each particle moves by its share of the tip's change.
 // ORDERED: see particles.glsl
 #define WHO 0
 #include "sim/volume.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cells from their sums: mean velocity, and how much denser they are than at rest.
+// Computes for each cell, from its sums, the mean velocity and how much denser it is than at rest.
 #define WHO 1
 #include "sim/volume.glsl"
 

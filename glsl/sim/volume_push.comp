@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-// What approaches a dense cell is stopped or bounces back, and what leaves it slowly leaves faster.
+// Stops hair that approaches a dense cell, or makes it bounce back; accelerates hair that leaves
+// the cell slowly.
 //
-// Across a face between cells a and b with the normal n (from a to b), masses m_a and m_b and mean
-// velocities u, the impulse J = e w M, M = m_a m_b / (m_a + m_b), acts on b along n and on a
-// against it, where w = n.(u_a - u_b) + s > 0. 0 <= e <= 2: 1 ends in w = 0, 2 turns it round. s is
-// the speed at which hair grows to its space again; both are 0 where nothing is dense. All faces
-// act at once: those of other directions touch other parts of a velocity, and the two of one
-// direction push a cell against each other, so that the square of their sum is at most the sum of
-// their squares. The energy changes by
+// Consider a face between cells a and b with normal n (from a to b), masses m_a and m_b and mean
+// velocities u. The impulse J = e w M, M = m_a m_b / (m_a + m_b), acts on b along n and on a
+// against n, if w = n.(u_a - u_b) + s > 0. The restitution e is between 0 and 2: with e = 1 the
+// cells end with w = 0, with e = 2 w changes its sign. s is the speed at which hair expands. Both
+// are 0 where nothing is dense. All faces act at once. Faces of different axes change different
+// components of a velocity. The two faces of one axis push a cell in opposite directions, so that
+// the square of their sum is at most the sum of their squares. The energy changes by at most
 //     sum over faces of -J (w - s) + J^2 / (2 M) = sum of M ((e^2/2 - e) w^2 + e w s)
-// at most: it can rise only by what parts the cells at the speed s.
+// For e <= 2 the first term is not positive, so energy can rise only by the expansion at the speed
+// s.
 //
-// LAST 1: gives the change, not the velocities
+// LAST 1: writes the change instead of the velocities
 #define WHO 1
 #include "sim/volume.glsl"
 

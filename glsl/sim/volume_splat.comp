@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Sums of the cells: particles, their densities at rest, their velocities. A strand a lane.
+// Sums up the particles of each cell: their number, their densities at rest, their velocities. One
+// strand a lane.
 //
-// SEGMENTS 1: `split`, whose particles go with their tip's velocity by their share of the way
+// SEGMENTS 1: for `split`, whose particles have the tip's velocity times their share of the way
+// from root to tip
 #define WHO 0
 #include "sim/volume.glsl"
 

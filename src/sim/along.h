@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: MIT
-// What of a step differs along the strand: parameters that are profiles (base/profile.h), as tables
-// of two vec4 a vertex that shaders read (glsl/sim/forces.glsl). Without profiles there is none.
+// Parameters that differ along the strand (profiles, base/profile.h). Shaders read them from
+// tables of two vec4 a vertex (glsl/sim/forces.glsl). Without profiles there is no table.
 #pragma once
 
 #include "sim/recipe.h"
 
-// A zeroed one may be destroyed and filled.
+// A zeroed struct may be destroyed and filled.
 typedef struct Along {
     const Hair *hair;
     const SectionParams *params;
     const SolverRecipe *recipe;
-    GpuBuffer *tables;     // [hair->batch_count], by the solver's vertices from its root on
+    GpuBuffer *tables;     // [hair->batch_count]: two vec4 a vertex, from the solver's root on
     const uint32_t *leads; // [hair->batch_count]: vertices before the solver's root
-    float (*texels)[4];    // [2 longest]
-    void *block;           // the recipe's, for one vertex
+    float (*texels)[4];    // [2 * vertices of the longest strand], scratch memory
+    void *block;           // scratch memory: the recipe's uniform block for one vertex
     uint64_t stamp;        // SolverStep.params_stamp
-    double dt;             // of the step that the tables are for; 0: none yet
-    bool first;
+    double dt;             // s, of the step for which the tables are filled; 0: not filled yet
+    bool first;            // the same step's SolverStep.first
 } Along;
 
-// Whether a parameter that the recipe can take as one is a profile.
+// Whether a parameter is a profile that the recipe supports.
 bool along_varies(const SolverRecipe *recipe, const SectionParams *params);
 
-// `leads` (StepPrograms) outlives it. RESULT_FAILED when memory is short.
+// `leads` (StepPrograms.leads) must outlive `along`. RESULT_FAILED when memory is short.
 Result along_create(Along *along, const SolverRecipe *recipe, const Hair *hair,
                     const uint32_t *leads, const SectionParams *params, const GpuLimits *limits,
                     Error *error);
 void along_destroy(Along *along);
 
-// The tables for a step, where dt or `first` have changed since the last. `mean`: the recipe's
-// block with each profile's mean.
+// Fills the tables for a step, if its dt or `first` differ from the last call's. `mean`: the
+// recipe's block, made from the mean of each profile.
 void along_fill(Along *along, const SolverStep *step, const void *mean);
 
-// Binds the table of batch `batch` at BIND_ALONG; nothing where there is none.
+// Binds the table of batch `batch` at BIND_ALONG. Does nothing if there is no table.
 void along_bind(const Along *along, uint32_t batch);

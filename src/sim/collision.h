@@ -12,18 +12,18 @@ typedef enum CollisionMode {
     COLLISION_PARTICLES, // positions in Hair's buffer and velocities
     COLLISION_SEGMENTS,  // unit directions with lengths, and tips: the state of split
     COLLISION_DRAWN,     // positions in Hair's buffer alone
-    COLLISION_FINDING,   // none: finds clearances (collision_find_clearances)
+    COLLISION_FINDING,   // pushes nothing: measures the clearances (see collide.comp)
 } CollisionMode;
 
 typedef struct CollisionBatch {
-    GpuBuffer contacts; // vec4 a particle: where it was at the end of step number w
+    GpuBuffer contacts; // vec4 a particle: its position (xyz) at the end of step number w
     GpuBuffer counts;   // uvec4 a strand: see collide.comp
 } CollisionBatch;
 
 // A zeroed struct is a pass that does nothing.
 typedef struct Collision {
     const Hair *hair;
-    const Hair *bounds; // whose bounds and greatest length hold for `hair`
+    const Hair *bounds; // hair whose bounds and longest strand are used for `hair`
     const SectionParams *params;
     const Colliders *colliders; // never NULL while it is on
     const DistanceField *field; // may be NULL
@@ -37,28 +37,30 @@ typedef struct Collision {
     CollideParams step;      // the present one's
 } Collision;
 
-// Empty if the scene has no colliders. With setup->keeps_groom and a mode other than
-// COLLISION_SEGMENTS particles stay as near to colliders as they are in the groom, for which the
-// hair's positions must be those of the groom with the head at the origin. Velocities and friction
-// need a mode other than COLLISION_DRAWN. RESULT_USAGE for more colliders than the loops of a CPU
-// driver can take.
+// The result is empty if the scene has no colliders.
+// With setup->keeps_groom, particles may stay as near to colliders as they are in the groom,
+// except in mode COLLISION_SEGMENTS. The hair's positions must then be those of the groom, with
+// the head at the origin.
+// Mode COLLISION_DRAWN changes no velocities and has no friction.
+// RESULT_USAGE for more colliders than the loops of a CPU driver can take.
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
                         uint32_t carried, Error *error);
 void collision_destroy(Collision *collision);
 
-// Places the colliders as the head has them at the end of a (sub-)step, number `part` (1 ..
-// `parts`) of the step; step->head is the head at that time. False if the hair cannot reach any.
+// Places the colliders for the end of sub-step `part` (1 .. `parts`) of a step; step->head is the
+// head at that time. False if the hair cannot reach any collider.
 bool collision_begin(Collision *collision, const SolverStep *step, int part, int parts);
 
-// Pushes out batch `batch`; `state` are its velocities or segments, `tips` those of split, else
-// NULL. Queues GPU work, visible to texture fetches and storage reads that follow.
+// Pushes batch `batch` out of the colliders. `state`: its velocities or segments; `tips`: the tips
+// of `split`, NULL for other solvers. Queues GPU work; later texture fetches and storage reads see
+// the result.
 void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state,
                     const GpuBuffer *tips);
 
-// Both for all batches of hair that is drawn as it is (COLLISION_DRAWN).
+// collision_begin and collision_push for all batches, for COLLISION_DRAWN.
 void collision_push_drawn(Collision *collision, const HeadPose *head);
 
-// The contacts that batch `batch` hands on to the next step (SOLVER_POINTS); NULL: none.
+// The contacts that batch `batch` passes on to the next step (SOLVER_POINTS); NULL: none.
 const GpuBuffer *collision_memory(const Collision *collision, uint32_t batch);
 
 // Adds contacts and depths to `report`. Waits for the GPU.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair on the GPU: the only thing that solvers and the renderer share. Solvers write positions, the
+// Hair on the GPU. Solvers and the renderer share nothing else: solvers write positions, the
 // renderer reads them.
 #pragma once
 
@@ -8,24 +8,26 @@
 
 #include "glsl/common/shared.h"
 
-// Strands of equal vertex count, no more than one buffer holds, in tiles of STRAND_TILE
-// (glsl/common/shared.h): particle 0 of a tile's strands side by side, then particle 1 and so on,
-// so that a group of lanes reads memory in sequence. (With a row of all strands for each particle,
-// CPUs lose up to a factor of two.) Copies of the last strand fill the last tile; they are stepped
-// but never drawn.
+// A batch has strands of equal vertex count, at most as many as fit in one buffer. Strands lie in
+// tiles of STRAND_TILE (glsl/common/shared.h): particle 0 of all strands of a tile side by side,
+// then particle 1 and so on, so that a group of lanes reads memory sequentially. (Without tiles,
+// with one row of all strands per particle, CPUs are up to two times slower.) Copies of the last
+// strand fill the last tile; they are simulated but never drawn.
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
-    // [strand_count], owned: which of the file's strands each is, or follows; may be NULL.
+    // [strand_count], owned: the number in the file of the strand, or of a follower's guide. May be
+    // NULL.
     uint32_t *strand;
-    // vec4 a particle: xyz in metres in the world, w = 1. Drawn.
+    // vec4 a particle: xyz in metres in the world, w = 1. These positions are drawn.
     GpuBuffer position;
     // vec4 a particle, the style in the head's frame. j = 0: root and the strand's length (m);
     // j > 0: unit direction of the segment from j - 1 to j and its rest length (m).
     GpuBuffer rest;
-    // uint a strand (and copy): its number in its section, seed of all that varies by strand.
+    // uint a strand (and copy): its number in its section, the seed of everything that varies from
+    // strand to strand.
     GpuBuffer strand_id;
-    // uvec4 a particle, see look_paint; no buffer if the section has one look.
+    // uvec4 a particle, see look_paint; no buffer if the whole section has one look.
     GpuBuffer paint;
 } HairBatch;
 
@@ -33,7 +35,7 @@ typedef struct HairBatch {
 // more particles than such a buffer can hold.
 enum { HAIR_MOST_SCRATCH = 3 };
 
-// Strands with the last tile's copies: what buffers have room for.
+// Number of strands including the copies in the last tile. Buffers have room for that many.
 static inline uint32_t hair_slots(const HairBatch *batch)
 {
     return (batch->strand_count + STRAND_TILE - 1) / STRAND_TILE * STRAND_TILE;
@@ -53,10 +55,10 @@ typedef struct Hair {
     uint64_t particle_count, segment_count;
     float low[3], high[3]; // bounds of the style in the head's frame, metres
     float longest;         // length of the longest strand, metres
-    float evenness;        // the least share that a segment has of its strand's average one
-    bool alike;            // strands do not differ by chance: their file says their colours
-    bool is_painted;       // its batches have paint ...
-    float paint_mean[3];   // ... of this mean colour, linear RGB
+    float evenness;        // smallest ratio of a segment's length to its strand's average segment
+    bool alike;            // no random variation of strands, because the file has their colours
+    bool is_painted;       // batches have `paint`
+    float paint_mean[3];   // mean colour of the paint, linear RGB
 } Hair;
 
 // Uploads strands (every one with at least 2 vertices and no segment of length 0, as strands_read
@@ -67,8 +69,8 @@ Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const 
                    Error *error);
 void hair_destroy(Hair *hair);
 
-// The drawn positions of all strands, one behind the other from root to tip, in the order of the
-// batches: positions[hair->particle_count]. Reading waits for the GPU; writing fills the last
-// tile's copies, too. RESULT_FAILED when memory is short.
+// Read or write the drawn positions of all strands, positions[hair->particle_count]: strand after
+// strand in the order of the batches, each from root to tip. Reading waits for the GPU; writing
+// also fills the copies in the last tile. RESULT_FAILED when memory is short.
 Result hair_read_positions(const Hair *hair, float (*positions)[3], Error *error);
 Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error *error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The head's motion, and what it does to all hair beyond pulling at the roots: it may move from the
-// first instant on, and it may jump.
+// The head's motion, and its effects on all hair beyond pulling at the roots: the head may already
+// move at time 0, and it may jump.
 #pragma once
 
 #include "scene/scene.h"
@@ -25,26 +25,26 @@ typedef struct HeadMotion {
 // Where the head is at `time` (s).
 HeadPose head_at(const Scene *scene, double time);
 
-// Whether both are the same to the bit.
+// Whether both poses are the same bit for bit.
 bool head_is_same(const HeadPose *a, const HeadPose *b);
 
-// The pose after the share t (0 .. 1) of a way: translation straight, rotation by slerp.
+// The pose between `a` (t = 0) and `b` (t = 1): linear in the translation, slerp in the rotation.
 HeadPose head_between(const HeadPose *a, const HeadPose *b, float t);
 
-// As uniform blocks have it: xyz of `translation`.
+// Writes a pose in the form of uniform blocks: quaternion, and translation in xyz.
 void head_put(vec4 rotation, vec4 translation, const HeadPose *pose);
 
 // The rigid motion that takes hair at rest on the head at `from` to hair at rest on it at `to`.
 HeadMotion head_motion_between(const HeadPose *from, const HeadPose *to);
 
-// The velocity that the head has at time 0: hair at rest on it has that too. False if it has none;
-// then `motion` changes nothing.
+// The head's velocity at time 0, which hair at rest on the head has too. False if it is zero;
+// `motion` is then the identity.
 bool head_starts_moving(const Scene *scene, HeadMotion *motion);
 
-// The rule of --teleport for a step in which the head goes from `from` to `to`: if its pivot moves
-// by more than teleport_distance or it turns by more than teleport_angle, hair is first carried
-// along to `*carried` (all the way, or but for a move of that size), from where the step begins.
-// False: nothing is carried.
+// The rule of --teleport, for a step in which the head goes from `from` to `to`. True if the pivot
+// moves by more than teleport_distance or the head turns by more than teleport_angle. Hair is then
+// first carried from `from` to `*carried`, and the step begins there: `*carried` is `to` (carry),
+// or differs from `to` by a move of the threshold's size (limit). False: nothing is carried.
 bool head_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to, HeadPose *carried);
 
 // The middle of the box around the roots of all sections (strands[scene->section_count]), in the

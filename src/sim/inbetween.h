@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Frames between two steps of the simulation (glsl/sim/inbetween.comp). Keeps the drawn positions
-// after both steps, and restores the later ones before the next step: they are a part of the state
-// of solvers that move every particle.
+// after both steps, and restores the later positions before the next step, because they are part
+// of the state of solvers that move every particle.
 #pragma once
 
 #include "sim/step.h"
@@ -12,21 +12,21 @@ typedef struct Inbetween {
     const GpuBuffer *frames;
     GpuBuffer *earlier, *later; // [hair->batch_count], vec4 a particle as in HairBatch.position
     StepPass pass;
-    bool mixed; // Hair's positions are not `later` now
+    bool mixed; // Hair's positions are interpolated now; they are not `later`
 } Inbetween;
 
-// `hair` and `frames`, of bound strands (bound_set_between; NULL: none), outlive it. RESULT_FAILED
-// when memory is short.
+// `frames`: those of bound strands (bound_set_between); NULL if hair is not bound. `hair` and
+// `frames` must outlive `inbetween`. RESULT_FAILED when memory is short.
 Result inbetween_create(Inbetween *inbetween, const Gpu *gpu, const Hair *hair,
                         const GpuBuffer *frames, Error *error);
 void inbetween_destroy(Inbetween *inbetween);
 
-// Copies the positions that are drawn now to the earlier or the later ones. All of these only queue
-// GPU work.
+// Copies the positions that are drawn now to `earlier` or `later`. This and the following
+// functions only queue GPU work.
 void inbetween_keep(Inbetween *inbetween, bool later);
 
-// Writes Hair's positions: `share` (0 .. 1) of the way from the earlier to the later ones. Heads
-// are those of both steps, and the one to draw.
+// Writes Hair's positions, interpolated between `earlier` (share = 0) and `later` (1). The poses
+// are those of the head after both steps, and the head's pose in the drawn frame.
 void inbetween_mix(Inbetween *inbetween, float share, const HeadPose *earlier,
                    const HeadPose *later, const HeadPose *now);
 

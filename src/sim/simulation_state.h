@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A simulation between two frames as bytes, from which another run of the same scene goes on as if
-// it had never stopped. docs/cache.md has the format.
+// Saves a simulation between two frames as bytes. Another run of the same scene continues from
+// them as if the first had never stopped. docs/cache.md has the format.
 #pragma once
 
 #include "base/bytes.h"
 #include "sim/simulation.h"
 
-// Free `state` with bytes_destroy. Waits for the GPU. Hair's positions are those of the last step
-// afterwards. RESULT_FAILED when memory is short.
+// The caller frees `state` with bytes_destroy. Waits for the GPU. Afterwards Hair's positions are
+// those of the last step. RESULT_FAILED when memory is short.
 Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error);
 
-// Puts it all back: the next simulation_advance goes on from there, simulation_pose draws the frame
-// that was saved. RESULT_BAD_INPUT if the bytes are not of a simulation of the same hair, solvers
-// and driver limits; the simulation may be half changed then. RESULT_FAILED when memory is short.
+// Restores the saved state. simulation_pose then draws the frame that was saved, and the next
+// simulation_advance continues from there. RESULT_BAD_INPUT if the bytes come from a simulation
+// with other hair, solvers or driver limits; the simulation may then be partly changed.
+// RESULT_FAILED when memory is short.
 Result simulation_state_restore(Simulation *simulation, const Bytes *state, Error *error);

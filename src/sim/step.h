@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One step of time: what it gives to all solvers (glsl/sim/step_params.h), and the compute programs
-// that take it.
+// One time step: the values that it gives to all solvers (glsl/sim/step_params.h), and the compute
+// programs that run it.
 #pragma once
 
 #include "base/params.h"
@@ -15,95 +15,97 @@
 // A step, the same for all sections.
 typedef struct SolverStep {
     double dt; // s
-    // The first step from rest: forces act for dt/2 (leapfrog start, which second order needs).
+    // The first step from rest: forces act for dt/2 (the leapfrog start that second order needs).
     bool first;
-    uint32_t number;         // counts up by 1 from step to step, from any start
+    uint32_t number;         // increases by 1 from step to step; any first value
     HeadPose head_old, head; // at the step's start and end
-    // Of the mesh that hair is bound to: numbers that are equal only where its shape is
-    // (bound_body_shape), and the shares of the whole step at which this part begins and ends.
+    // The shape of the mesh that hair is bound to, at the step's start and end (bound_body_shape).
     double shape_old, shape;
-    float frame_old, frame_now;
-    uint64_t params_stamp;  // equal only where the section's parameters are (section_tracks_stamp)
-    float gravity[3];       // m/s^2
-    float wind[4][3];       // m/s: mixed by the place of a strand's root
-    float shelter[4];       // m: the middle of the head; share of the wind kept off behind it
-    float head_velocity[3]; // m/s, of that middle
+    float frame_old, frame_now; // a sub-step's begin and end, as fractions of the whole step
+    uint64_t params_stamp;      // identifies the section's parameters (section_tracks_stamp)
+    float gravity[3];           // m/s^2
+    float wind[4][3];           // m/s: mixed for each strand, by the position of its root
+    float shelter[4];           // xyz: middle of the head (m); w: share of the wind that it blocks
+    float head_velocity[3];     // m/s, of the middle of the head
 } SolverStep;
 
-// Fills the step's shelter and head_velocity from its heads and dt: the lee of the head, whose
-// middle in its own frame is `middle` (m, head_middle), keeps off `share` of the wind.
+// Fills the step's shelter and head_velocity from its head poses and dt. `middle`: the middle of
+// the head in the head's frame (m, head_middle); `share`: share of the wind that the head blocks.
 void step_shelter(SolverStep *step, const float middle[3], float share);
 
-// The factors of exact drag c (1/s) over h seconds: *decay = e^{-ch}, *gain = (1 - e^{-ch})/c = h f
-// (h at c = 0).
+// The factors of exact drag c (1/s) over h seconds: *decay = e^{-ch}, *gain = (1 - e^{-ch})/c,
+// which is h at c = 0.
 void step_drag_factors(double c, double h, float *decay, float *gain);
 
-// What a step gives to each batch; `strand_count`, `vertex_count` and `phase` are left 0.
+// The uniforms of a step, the same for each batch; `strand_count`, `vertex_count` and `phase` are
+// left 0.
 StepParams step_uniforms(const SolverStep *step, const SectionParams *params);
 
-// The spring towards the style over h seconds (glsl/sim/style_spring.h), under the drag of
+// The spring towards the style over h seconds (glsl/sim/style_spring.h), with the drag of
 // `uniforms`.
 StyleSpring step_style_spring(const StepParams *uniforms, double h, const SectionParams *params);
 
-// For solvers by the midpoint rule (glsl/sim/midpoint.glsl): `decay` and `gain` become those of
-// dt/2, for which the spring is. They start from rest like any other step: `first` does not matter.
+// For solvers that use the midpoint rule (glsl/sim/midpoint.glsl): changes `decay` and `gain` to
+// those of dt/2 and returns the spring for dt/2. The first step is like any other, so step->first
+// is not used.
 StyleSpring step_midpoint(StepParams *uniforms, const SolverStep *step,
                           const SectionParams *params);
 
-// SolverRecipe.along of solvers whose block begins with a StyleSpring: that spring.
+// SolverRecipe.along for solvers whose uniform block begins with a StyleSpring: writes that
+// spring.
 void step_spring_along(float texel[4], const void *block, const void *mean,
                        const SectionParams *there);
 
-// style/(1 - style): 1, a stiffness as given, for style 0.5.
+// style/(1 - style), the factor of stiffnesses: 1 for style 0.5.
 float step_style_odds(const SectionParams *params);
 
 enum { STEP_OWN_DEFINES = 8 };
 
-// A program that works on strands, a lane each, and its parameters. A zeroed one may be destroyed.
+// A compute program that works on strands, one strand a lane. A zeroed struct may be destroyed.
 typedef struct StepPass {
     GLuint program;
     const GpuLimits *limits; // the context's
 } StepPass;
 
-// `defines`: all macros but GROUP_SIZE, STEP_OWN_DEFINES at most, ended by {0}; NULL: none. Errors
-// of shader_build_compute.
+// `defines`: all macros except GROUP_SIZE, at most STEP_OWN_DEFINES, ended by {0}; NULL: none.
+// Errors of shader_build_compute.
 Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
                         const ShaderDefine *defines, Error *error);
 void step_pass_destroy(StepPass *pass);
 
-// Runs it on `strand_count` strands with the block `params` of `size` bytes at BIND_STEP; the other
-// buffers are bound.
+// Runs the program on `strand_count` strands, with the uniform block `params` of `size` bytes at
+// BIND_STEP. The caller has bound the other buffers.
 void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t strand_count);
 
-// What decides how many programs a solver has and how strands go to lanes.
+// What decides how many programs a solver has, and how strands are assigned to lanes.
 typedef struct StepProgramsOptions {
     const char *shader; // glsl file
-    StepShape shape;    // which strands get IN_REGISTERS 1, and how many strands a lane takes
-    uint32_t lead;      // vertices that the head carries beside the root, where a strand has enough
-    bool sheltered;     // the head keeps wind off (forces.glsl)
+    StepShape shape;    // row of STEP_SIZES: which strands stay in registers, strands per lane
+    uint32_t lead;      // vertices after the root that the head carries, if a strand has enough
+    bool sheltered;     // the head blocks wind (forces.glsl)
     bool styled;        // there is a spring towards the style
     bool varies;        // parameters differ along the strand (along.h)
     bool bound;         // strands have frames of their own (bound.h)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
-// The programs of a solver: one for each of a hair's batches, shared where batches are alike.
+// The programs of a solver: one for each batch of the hair. Similar batches share a program.
 typedef struct StepPrograms {
-    GLuint *programs; // [batch_count]; equal ones may be the same
-    uint32_t *leads;  // [batch_count]: of the batch's strands
+    GLuint *programs; // [batch_count]; some may be equal
+    uint32_t *leads;  // [batch_count]: vertices after the root that the head carries
     uint32_t batch_count, strands_per_lane;
     const GpuLimits *limits; // the context's
     bool in_registers;
-    bool ordered; // the state is read by the buffers that it is written to (particles.glsl)
+    bool ordered; // the state is read through the buffers it is written to (particles.glsl)
 } StepPrograms;
 
-// Compiles with the macros GROUP_SIZE (lanes), STRANDS (a lane's), IN_REGISTERS, VERTICES (but for
-// the lead), LEAD, SHELTER, STYLED, VARIES, ORDERED, BOUND and the own ones. Strands are in
-// registers if all are short enough and of few different counts. Errors of shader_build_compute;
-// RESULT_FAILED without memory.
+// Compiles the programs with the macros GROUP_SIZE (lanes), STRANDS (per lane), IN_REGISTERS,
+// VERTICES (without the lead), LEAD, SHELTER, STYLED, VARIES, ORDERED, BOUND and the solver's own.
+// Strands are kept in registers if all are short enough and they have few different vertex counts.
+// Errors of shader_build_compute; RESULT_FAILED when memory is short.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);
 
-// Runs batch `batch` of `strand_count` strands; the buffers are bound.
+// Runs the program of batch `batch` on `strand_count` strands. The caller has bound the buffers.
 void step_programs_dispatch(const StepPrograms *programs, uint32_t batch, uint32_t strand_count);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How the strands of each solver lie on the lanes of each kind of device: one table. What a group
-// has of lanes is GpuSizes.strands.
+// How the strands of each solver are assigned to the lanes of each kind of device, in one table.
+// GpuSizes.strands has the number of lanes in a group.
 #pragma once
 
 #include "gpu/gpu_sizes.h"
 
 #include <stdint.h>
 
-// A row of the table. The first is of solvers that always keep strands in memory.
+// A row of the table. The first row is for solvers that always keep strands in memory.
 typedef enum StepShape {
     STEP_IN_MEMORY,
     STEP_CHAIN,
@@ -19,11 +19,11 @@ typedef enum StepShape {
 } StepShape;
 
 typedef struct StepSizes {
-    // Strands of at most this many vertices stay in registers for a step, which costs a compilation
-    // for each vertex count; 0: never.
+    // Strands of at most this many vertices stay in registers during a step, which needs a compiled
+    // program for each vertex count; 0: never.
     uint32_t most_in_registers;
-    // Strands of a lane where they are in registers: two hide each other's latency on a CPU; a GPU
-    // has other waves for that.
+    // Strands per lane if they are in registers. On a CPU two strands hide each other's latency; on
+    // a GPU other waves do.
     uint32_t strands;
 } StepSizes;
 

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Volume: hair that is denser than it was at rest gets no denser, and its strands slow each other
-// down.
+// Volume: hair that is denser than in its rest pose gets no denser, and its strands slow each
+// other down.
 //
 // After each step the particles of a section are summed up in the cells of a grid that moves with
-// the head: how many, and their velocities. A cell is dense if it has more of them than its own
-// groom had there, and more than those which are in it now had about them at rest. So a groom at
-// rest feels nothing, with cells of any size. What approaches a dense cell is stopped, or
-// bounces back the more the denser it is, and leaves it at a speed of a few cells a second
-// (volume_push.comp); velocities within it are mixed. All of it keeps momentum; only the leaving
-// can add kinetic energy, at a bounded speed. Particles outside the grid, those that the head
-// carries and followers take no part. Each section has a grid of its own.
+// the head: their number and their velocities. A cell is dense if it has more particles than its
+// own groom had there, and also more than its present particles had around them at rest. So a
+// groom at rest is not affected, whatever the size of the cells.
+// - Hair that approaches a dense cell is stopped; it bounces back if the cell is much too dense.
+// - Hair in a dense cell leaves it at a speed of a few cells a second (volume_push.comp).
+// - Velocities within a dense cell are mixed (friction).
+// All of this keeps momentum. Only the leaving can add kinetic energy, at a bounded speed.
+// Particles outside the grid, particles that the head carries, and followers take no part. Each
+// section has its own grid.
 //
 // After Petrovic, Henne and Anderson 2005, Volumetric methods for simulation and rendering of hair
 // (density and velocity on a grid, friction), and McAdams et al. 2009, Detail preserving continuum
 // simulation of straight hair (particles take changes of the grid's velocities). Impulses between
-// cells stand in for their repulsion and pressure: no equations are solved.
+// cells replace their repulsion and pressure, so no system of equations is solved.
 #pragma once
 
 #include "gpu/gpu_timer.h"
@@ -29,25 +31,25 @@ typedef struct Volume {
     const Solver *solver;
     GpuTimer *timer;
     float strength;
-    float low[3]; // of the grid, in the head's frame (m)
-    float middle[3];
+    float low[3];    // lowest corner of the grid, in the head's frame (m)
+    float middle[3]; // its middle
     uint32_t cell_count;
     uint32_t grain; // see volume.glsl
     VolumeParams step;
     bool segments;
     StepPass splat, cells, push[2], apply;
     GpuBuffer sums, own, faces, changes, dense;
-    GpuBuffer velocities[3]; // at first, and two that take turns
+    GpuBuffer velocities[3]; // of the cells: before the impulses, and two buffers used in turn
     GpuBuffer *rest;         // [hair->batch_count]: uint a particle, its density at rest
 } Volume;
 
-// Empty with params->volume 0 or a solver that steps nothing. The hair stands in its style, the
-// head at the origin, as hair_create leaves it. RESULT_FAILED when memory is short; errors of
-// shader_build_compute and of buffers.
+// The result is empty if params->volume is 0 or the solver is static. The hair must be in its
+// style with the head at the origin, as hair_create leaves it. RESULT_FAILED when memory is short;
+// errors of shader_build_compute and of buffers.
 Result volume_create(Volume *volume, const Gpu *gpu, GpuTimer *timer, const Hair *hair,
                      const Solver *solver, const SectionParams *params, Error *error);
 void volume_destroy(Volume *volume);
 
-// Call after a solver's step: changes the velocities that the next one begins with. Queues GPU
+// Call after a solver's step. Changes the velocities with which the next step begins. Queues GPU
 // work.
 void volume_step(Volume *volume, const SolverStep *step);
