@@ -10,68 +10,68 @@ Path = Union[str, os.PathLike[str]]
 
 class Parameters(TypedDict, total=False):
     unit: Union[float, str]
-    """length of one unit of the hair file; auto: as the file says, or guessed from format and size, with a line that
-    says so [1e-09 to 1000000000 m; default auto]"""
+    """length of one unit of the hair file; auto: as the file says, otherwise guessed from format and size, which is
+    reported [1e-09 to 1000000000 m; default auto]"""
     up: Literal["auto", "y", "z"]
-    """axis of the hair file that points up; auto: as the file says (USD), else z in Cem Yuksel's .hair files, y in
-    others [default auto]"""
+    """axis of the hair file that points up; auto: as the file says (USD), otherwise z in Cem Yuksel's .hair files and y
+    in all others [default auto]"""
     points_per_strand: int
-    """points of each strand of a .ply or .npy that is a mere list of points; vertices of each cubic curve of USD or
-    Alembic; 0: found by where points jump, and 1 to 4 for each segment of a curve [0 to 65535; default 0]"""
+    """points per strand in .ply and .npy files that only list points, and vertices per cubic curve of USD and Alembic
+    files; 0: found from the jumps between strands, and 1 to 4 per curve segment [0 to 65535; default 0]"""
     group: Union[int, Literal["auto"]]
-    """number of the group of the hair file's strands to take: Alembic's groom_group_id, a section of a .usda; auto: all
-    [0 to 16777215; default auto]"""
+    """read only the strands of this group: Alembic's groom_group_id, a section of a .usda; auto: all strands [0 to
+    16777215; default auto]"""
     array: str
-    """name of the .npz file's array of positions; without it 'positions', 'points' or the first that can be it [default
-    none]"""
+    """name of the array of positions in the .npz file; empty: 'positions', 'points' or the first array of a suitable
+    shape [default none]"""
     strict: bool
     """reject hair files with defects instead of repairing them [default false]"""
     mesh_rest: Path
-    """OBJ or PLY file of a deforming mesh in the pose in which its hair was groomed; gives the faces where --mesh has
-    none; empty: the pose at time 0 [default none]"""
+    """OBJ or PLY file of a deforming mesh in the pose in which its hair was groomed; it also gives the faces if --mesh
+    has none; empty: the pose at time 0 [default none]"""
     mesh_fps: Union[float, Literal["auto"]]
-    """samples of a deforming mesh per second; auto: as its file says, or else --fps [0.001 to 100000 1/s; default
+    """samples of a deforming mesh per second; auto: as its file says, otherwise --fps [0.001 to 100000 1/s; default
     auto]"""
     mesh_start: float
-    """time of a deforming mesh's first sample; it holds before, and the last one after [-1000000 to 1000000 s; default
-    0]"""
+    """time of a deforming mesh's first sample; before it the first sample holds, after the last sample the last one
+    [-1000000 to 1000000 s; default 0]"""
     mesh_motion: Literal["smooth", "linear"]
-    """a deforming mesh between two samples: smooth (cubic splines), or linear [default smooth]"""
+    """interpolation between two samples of a deforming mesh: smooth (cubic splines) or linear [default smooth]"""
     mesh_unit: Union[float, str]
-    """length of one unit of the mesh; auto: as the first hair file [1e-09 to 1000000000 m; default auto]"""
+    """length of one unit of the mesh; auto: as for the first hair file [1e-09 to 1000000000 m; default auto]"""
     mesh_up: Literal["auto", "y", "z"]
-    """axis of the mesh that points up; auto: as in the first hair file [default auto]"""
+    """axis of the mesh that points up; auto: as for the first hair file [default auto]"""
     scalp: Literal["auto", "none"]
-    """what hair without a mesh grows on: auto fits the bundled head to roots that look like a scalp; scene files have
-    none unless they say so [default auto]"""
+    """head for hair without a mesh: auto fits the bundled head to the roots if they look like a scalp; in scene files
+    the default is none [default auto]"""
     aov: Literal["none", "coverage", "depth", "tangent", "strand"]
-    """draw this instead of light: the coverage of hair, the depth of the nearest strand or mesh, or the nearest
-    strand's tangent or own color [default none]"""
+    """draw an auxiliary image instead of lit hair: coverage of hair, depth of the nearest strand or mesh, or tangent or
+    an own color of the nearest strand [default none]"""
     algo: str
     """hair solver; none draws the hair as in the file; list describes the solvers [default hybrid]"""
     variant: str
-    """variant of the solver, see --algo list; empty: the solver's first [default none]"""
+    """variant of the solver, see --algo list; empty: the first variant [default none]"""
     style: Union[float, Numbers, str]
     """how much hair keeps its rest shape: 0 loose, 1 rigid [0 to 1; default 0.5]"""
     rest: Literal["groom", "hanging"]
-    """where hair with a style rests: groom, as in the file, under the gravity and with the head as at time 0; hanging,
-    where its weight draws it from there [default groom]"""
+    """rest shape of hair with a style: groom, the shape in the file, which gravity does not change while the head is as
+    at time 0; hanging, the shape that the groom takes under its weight [default groom]"""
     style_stiffness: Union[float, Numbers, str]
-    """stiffness towards the rest shape at style 0.5; it is multiplied by style/(1 - style) [0 to 1000000000 1/s2;
-    default 200; of chain, hybrid, emulation, rope, dftl]"""
+    """stiffness towards the rest shape at style 0.5; at other styles multiplied by style/(1 - style) [0 to 1000000000
+    1/s2; default 200; of chain, hybrid, emulation, rope, dftl]"""
     drag: Union[float, Numbers, str]
     """rate at which hair takes on the velocity of the air [0 to 1000000 1/s; default 3]"""
     gravity_share: Union[float, Numbers, str]
     """share of gravity that hair feels [0 to 1; default 1]"""
     chain_bend: float
-    """stiffness of bend and twist towards the rest shape at style 0.5; it is multiplied by style/(1 - style); 0: off [0
-    to 1000000 m/s2; default 0; of chain]"""
+    """stiffness of bend and twist towards the rest shape at style 0.5; at other styles multiplied by style/(1 - style);
+    0: off [0 to 1000000 m/s2; default 0; of chain]"""
     ftl_damping: float
-    """share of a particle's correction that is given back to the velocity of the particle before it [0 to 1; default
-    0.98; of dftl]"""
+    """share of a particle's position correction that is subtracted from the velocity of the previous particle [0 to 1;
+    default 0.98; of dftl]"""
     rope_iterations: int
-    """iterations over the links at the end of a step; variant xpbd: small steps of one iteration each [1 to 1000;
-    default 10; of rope]"""
+    """iterations over the links at the end of a step; variant xpbd: substeps of one iteration each [1 to 1000; default
+    10; of rope]"""
     rope_damping: float
     """share of the velocity that is lost in each step [0 to 1; default 0; of rope]"""
     rope_time_scale: float
@@ -82,17 +82,18 @@ class Parameters(TypedDict, total=False):
     spring_coil: float
     """stiffness along a strand: acceleration per metre of stretch [1 to 100000000 1/s2; default 10000; of spring]"""
     spring_angular: float
-    """acceleration towards the rest shape per radian at style 0.5; it is multiplied by style/(1 - style) [0 to 1000000
-    m/s2; default 10; of spring]"""
+    """acceleration towards the rest shape per radian at style 0.5; at other styles multiplied by style/(1 - style) [0
+    to 1000000 m/s2; default 10; of spring]"""
     stretch_drawn: bool
     """draw links with their stretched length instead of their rest length [default false; of rope, spring]"""
     tressfx_vsp_coeff: float
     """share of the root's motion that moves the whole strand [0 to 1; default 0.8; of tressfx]"""
     tressfx_vsp_accel_threshold: float
-    """change of the root's displacement per frame beyond which that share is 1 [0 to 1000000 cm; default 1.4; of
-    tressfx]"""
+    """change of the root's displacement per frame above which the share of --tressfx-vsp-coeff becomes 1 [0 to 1000000
+    cm; default 1.4; of tressfx]"""
     tressfx_local_constraint_stiffness: float
-    """how firmly a segment keeps its direction relative to the previous one [0 to 1; default 0.9; of tressfx]"""
+    """stiffness that keeps the direction of a segment relative to the previous segment [0 to 1; default 0.9; of
+    tressfx]"""
     tressfx_local_constraints_iterations: int
     """passes of the local shape constraint per step; 0: off [0 to 100; default 2; of tressfx]"""
     tressfx_global_constraint_stiffness: float
@@ -100,12 +101,13 @@ class Parameters(TypedDict, total=False):
     tressfx_global_constraints_range: float
     """share of the vertices, from the root, that the global stiffness acts on [0 to 1; default 0.3; of tressfx]"""
     tressfx_length_constraints_iterations: int
-    """passes of the length constraint per step; variant steady keeps lengths exactly [0 to 100; default 2; of
-    tressfx]"""
+    """passes of the length constraint per step; variant steady keeps lengths exactly in any case [0 to 100; default 2;
+    of tressfx]"""
     tressfx_damping: float
-    """damping per frame; times the damping rate it is added to --drag [0 to 1; default 0.08; of tressfx]"""
+    """damping per frame; multiplied by --tressfx-damping-rate it is added to --drag [0 to 1; default 0.08; of
+    tressfx]"""
     tressfx_damping_rate: float
-    """frames per second that the solver's parameters are meant for (fixed in TressFX) [0 to 10000 1/s; default 60; of
+    """frames per second for which the solver's parameters are tuned (fixed in TressFX) [0 to 10000 1/s; default 60; of
     tressfx]"""
     tressfx_local_share: float
     """share of a correction that each end of a segment takes (fixed in TressFX) [0 to 1; default 0.5; of tressfx]"""
@@ -114,34 +116,34 @@ class Parameters(TypedDict, total=False):
     tressfx_clamp_position_delta: float
     """maximum displacement per frame that becomes velocity [0.001 to 1000000 cm; default 20; of tressfx]"""
     followers: Union[int, Literal["auto"]]
-    """drawn for each strand; auto: as the file says (-1), else as many as fill few strands, 0 with --radius [-1 to
-    1000; default auto]"""
+    """followers per guide strand; auto: as the file says (-1), otherwise enough to fill a sparse groom; 0 if --radius
+    is given [-1 to 1000; default auto]"""
     follow: Literal["offset", "interpolate", "auto"]
-    """where followers are: at an offset from their guide, or interpolated between the three guides around their root;
-    auto: interpolate where --followers auto fills, else offset [default auto]"""
+    """placement of followers: at an offset from their guide, or interpolated between the three guides around their
+    root; auto: interpolate if --followers auto fills a sparse groom, otherwise offset [default auto]"""
     follower_radius: Union[float, Literal["auto"]]
-    """maximum distance of a follower's root from its guide's; followers are interpolated between guides at most 6 times
-    as far apart; auto: as the file says, or so that followers cover the scalp [1e-07 to 1000000 m; default auto]"""
+    """largest distance of a follower's root from its guide's root; interpolation uses guides at most 6 times as far
+    apart; auto: as the file says, otherwise so that followers cover the scalp [1e-07 to 1000000 m; default auto]"""
     tip_separation: float
-    """how much farther from its guide a follower's tip is than its root: 0 equally far, 1 twice as far, -1 at the
+    """distance of a follower's tip from its guide, relative to that of its root: 0 the same, 1 twice as far, -1 at the
     guide's tip [-1 to 100; default 0]"""
     clump: float
-    """how far followers gather on their guide towards the tip, as wet hair and fur do: 0 not at all, 1 in its tip [0 to
-    1; default 0]"""
+    """how far followers are pulled to their guide at the tip, as in wet hair and fur: 0 not at all, 1 to the guide's
+    tip [0 to 1; default 0]"""
     volume: float
-    """how firmly hair that is denser than at rest is kept from growing denser still; 1 is usual; 0: strands do not feel
-    each other [0 to 10; default 0]"""
+    """strength of the repulsion where hair is denser than in its rest shape; 1 is usual; 0: strands ignore each other
+    [0 to 10; default 0]"""
     sleep: float
-    """hair at rest is not simulated until a force or the head changes; the value is the largest drift in a minute, as a
-    fraction of strand length; 0: never sleep [0 to 1; default 1e-05]"""
+    """hair at rest is not simulated until a force or the head changes; the value is the largest drift in a minute that
+    counts as rest, as a fraction of strand length; 0: never sleep [0 to 1; default 1e-05]"""
     clamped: int
-    """vertices per strand that move with the head: 1 the root; 2 also fixes the direction at the root (tressfx always
-    2; strands of two vertices keep a free tip) [1 to 2; default 1]"""
+    """vertices per strand that move with the head: 1: the root; 2: also the next vertex, which fixes the direction at
+    the root (tressfx always 2; strands of two vertices keep a free tip) [1 to 2; default 1]"""
     fps: float
     """frames per second of the video [1 to 10000 1/s; default 60]"""
     speed: float
-    """seconds of the scene per second of video: 0.25 is slow motion; 0: only the turntable moves, after --preroll [0 to
-    10000; default 1]"""
+    """seconds of the scene per second of video: 0.25 is slow motion; 0: hair stays as after --preroll, and only the
+    turntable moves [0 to 10000; default 1]"""
     sim_rate: float
     """simulation steps per second, independent of --fps and --speed; frames between two steps are interpolated; 0: one
     step per frame [0 to 1000000 1/s; default 0]"""
@@ -149,27 +151,28 @@ class Parameters(TypedDict, total=False):
     """simulation steps per frame, or per step of --sim-rate; auto: as many as the solver needs to be stable [1 to 1000;
     default 1]"""
     preroll: float
-    """simulate this long before the first frame, with the head at rest, so that hair settles [0 to 10000 s; default
+    """simulate this time before the first frame, with the head at rest, so that hair settles [0 to 10000 s; default
     0]"""
     teleport: Literal["carry", "limit", "none"]
-    """what a jump of the head does: carry moves the hair along; limit: like carry, but hair still feels a move of the
-    threshold's size; none pulls the hair along [default carry]"""
+    """what happens when the head jumps: carry moves the hair along; limit does the same, but hair still feels a motion
+    as large as the threshold; none lets the roots pull the hair [default carry]"""
     teleport_distance: float
-    """move of the head's pivot in one step beyond which it is a jump [1e-06 to 1000000 m; default 0.5]"""
+    """motion of the head's pivot in one step above which it is a jump [1e-06 to 1000000 m; default 0.5]"""
     teleport_angle: float
-    """turn of the head in one step beyond which it is a jump [0.01 to 180 deg; default 90]"""
+    """rotation of the head in one step above which it is a jump [0.01 to 180 deg; default 90]"""
     seed: int
     """start of all random numbers; the same seed gives the same images [0 to 4294967295; default 1]"""
     gravity: Union[Numbers, str]
     """acceleration of gravity [-1000000 to 1000000 m/s2; default 0,-9.81,0]"""
     wind: Union[Numbers, str]
-    """mean velocity of the air; it acts on hair by --drag [-1000000 to 1000000 m/s; default 0,0,0]"""
+    """mean velocity of the air, see --drag [-1000000 to 1000000 m/s; default 0,0,0]"""
     gust: float
     """share of the wind that varies with time [0 to 1; default 0.5]"""
     gust_period: float
-    """time from gust to gust [0.001 to 1000000 s; default 2]"""
+    """time between gusts [0.001 to 1000000 s; default 2]"""
     gust_repeat: float
-    """repeat the gusts after this time, with periods rounded to fit; 0: no repetition [0 to 1000000 s; default 0]"""
+    """period after which the gusts repeat, for loops; gust periods are rounded so that they fit; 0: no repetition [0 to
+    1000000 s; default 0]"""
     wind_spread: float
     """largest angle between the mean wind and the wind at a strand [0 to 90 deg; default 15]"""
     wind_shelter: float
@@ -186,8 +189,8 @@ class Parameters(TypedDict, total=False):
     friction: float
     """Coulomb's friction coefficient between hair and colliders [0 to 100; default 0.3]"""
     collision_margin: float
-    """distance that hair keeps from colliders; it hides the straight lines between particles [0 to 1000 m; default
-    0.001]"""
+    """distance that hair keeps from colliders, so that the straight links between particles stay outside, too [0 to
+    1000 m; default 0.001]"""
     eye: Union[Numbers, str]
     """position of the camera; auto frames the moving hair [-1000000 to 1000000 m; default auto]"""
     target: Union[Numbers, str]
@@ -197,15 +200,15 @@ class Parameters(TypedDict, total=False):
     fov: float
     """vertical field of view [1 to 170 deg; default 30]"""
     framing: Literal["auto", "expected", "hair", "all"]
-    """what an automatic camera frames: expected, where hair may swing; hair, the hair of all frames, simulated
-    beforehand; all, the same with the mesh; auto: all for turntables, else expected [default auto]"""
+    """what an automatic camera frames: expected, where hair may swing; hair, all frames of the hair, simulated first;
+    all, the same with the mesh; auto: all for turntables, otherwise expected [default auto]"""
     margin: float
     """margin of an automatic camera, as a fraction of the image [0 to 10; default 0.06]"""
     turntable: float
-    """angle (360 without a number) by which the camera turns in the sequence, 6 s long unless --frames or --fps is
-    given [-1000000 to 1000000 deg; default 0]"""
+    """angle (360 if no number follows) by which the camera turns over the sequence, which lasts 6 s unless --frames or
+    --fps is given [-1000000 to 1000000 deg; default 0]"""
     turn_lights: bool
-    """the turntable turns the lights too, as if the hair turned in front of the camera; sky and ground stay [default
+    """lights turn with the turntable's camera, as if the hair turned in front of it; sky and ground stay [default
     false]"""
     ease_in: float
     """share of the sequence in which the turntable accelerates [0 to 1; default 0]"""
@@ -217,11 +220,11 @@ class Parameters(TypedDict, total=False):
     """how fibres scatter light: kajiya (cheap, empirical) or marschner (measured; light passes through the fibre)
     [default marschner]"""
     color: Union[Numbers, str]
-    """color that a whole head of hair shows in light, sRGB (its albedo), as those of files, maps and tips are; also
-    --albedo; or (vertices, 3 or 4), linear RGB and opacity of each [0 to 1; default #5e3f2b]"""
+    """visible color (albedo) of a whole head of hair, sRGB, as are colors of files, maps and tips; also --albedo; or
+    (vertices, 3 or 4), linear RGB and opacity of each [0 to 1; default #5e3f2b]"""
     transmission: Union[Numbers, str]
-    """physical, in place of --color: color of the light that has crossed a fibre along its diameter, sRGB; auto: found
-    from --color [0 to 1; default auto]"""
+    """physical alternative to --color: color of light after one fibre diameter, sRGB; auto: computed from --color [0 to
+    1; default auto]"""
     color_variation: float
     """random variation of brightness between strands [0 to 1; default 0.35]"""
     warmth_variation: float
@@ -229,24 +232,22 @@ class Parameters(TypedDict, total=False):
     color_map: Path
     """PNG file that colors each strand by the texture coordinates of its root [default none]"""
     file_colors: bool
-    """use the colors of the hair file, if it has any; not where a color, a transmission or melanin is given [default
-    true]"""
+    """use the colors of the hair file; ignored if --color, --transmission or --melanin is given [default true]"""
     file_opacity: bool
-    """use the opacities of the hair file, if it has any; not where --opacity or --no-file-colors is given [default
-    true]"""
+    """use the opacities of the hair file; ignored if --opacity or --no-file-colors is given [default true]"""
     file_thickness: bool
-    """use the thickness of the hair file, if it has any, relative to its mean (--radius) [default true]"""
+    """use the thickness of the hair file, relative to its mean, as a factor of --radius [default true]"""
     tip_color: Union[Numbers, str]
     """color of the tips, sRGB [0 to 1; default #c8a070]"""
     tip_length: float
     """share of the strand, from the tip, over which the color changes to --tip-color; 0: none [0 to 1; default 0]"""
     radius: Union[float, Literal["auto"]]
-    """fibre radius at the root; auto: so that 3 fibres lie before a point of the hair on average, or as thick as still
-    looks like a fibre [1e-07 to 1 m; default auto]"""
+    """fibre radius at the root; auto: so that on average 3 fibres cover each point of the hair, but not thicker than
+    still looks like a fibre [1e-07 to 1 m; default auto]"""
     tip_ratio: float
     """radius at the tip divided by the radius at the root [0 to 1; default 0.3]"""
     opacity: float
-    """opacity of a fibre where it covers a whole pixel [0 to 1; default 1]"""
+    """opacity of a fibre that covers a whole pixel [0 to 1; default 1]"""
     ambient: float
     """Kajiya-Kay Ka: ambient light [0 to 100; default 0.12]"""
     diffuse: float
@@ -260,105 +261,106 @@ class Parameters(TypedDict, total=False):
     exponent2: float
     """sharpness of the second highlight [1 to 10000; default 9]"""
     cone_angle: float
-    """tilt of the fibre's scales: shifts the highlights by 2 and 3 times this angle, transmitted light by 1 [0 to 45
-    deg; default 7.5]"""
+    """tilt of the fibre's scales: shifts the two highlights by 2 and 3 times this angle, and transmitted light by 1
+    time [0 to 45 deg; default 7.5]"""
     melanin: Union[float, Literal["auto"]]
-    """physical, in place of --color: pigment of a fibre; 0.1 blond, 0.2 dark blond, 0.6 brown, 1.3 dark brown, 3 black;
-    auto: use --color [0 to 100; default auto]"""
+    """physical alternative to --color: amount of pigment; 0.1 blond, 0.2 dark blond, 0.6 brown, 1.3 dark brown, 3
+    black; auto: use --color [0 to 100; default auto]"""
     melanin_redness: float
     """share of red pheomelanin in --melanin; the rest is brown eumelanin [0 to 1; default 0]"""
     refraction: float
     """marschner: refractive index of the fibre [1.05 to 3; default 1.55]"""
     roughness: float
-    """marschner: width of the first highlight along the fibre (beta of R); transmitted light has half of it, light
+    """marschner: width of the first highlight along the fibre (beta of R); transmitted light has half this width, light
     reflected inside twice [1 to 30 deg; default 5]"""
     lobes: Literal["energy", "gauss"]
-    """marschner: form of the lobes along the fibre: energy conserves energy, gauss is as published in 2003 [default
-    energy]"""
+    """marschner: shape of the lobes along the fibre: energy conserves energy, gauss is the published form of 2003
+    [default energy]"""
     azimuthal_roughness: float
-    """marschner: width of the light's spread around the fibre [5 to 60 deg; default 12]"""
+    """marschner: width by which light spreads around the fibre [5 to 60 deg; default 12]"""
     look: Literal["studio", "plain"]
-    """defaults of lights, fibres, exposure and background: studio, or plain, two lights without shadows, to compare
+    """defaults of lights, fibres, exposure and background: studio; or plain: two lights without shadows, to compare
     with older images [default studio]"""
     sky: Union[Numbers, str]
     """color of the ambient light from above (+y), sRGB [0 to 1; default #5c6066]"""
     ground: Union[Numbers, str]
-    """color of the ambient light from below, sRGB; between sky and ground it is interpolated by height [0 to 1; default
+    """color of the ambient light from below, sRGB; directions between sky and ground get a mixture [0 to 1; default
     #3a3836]"""
     shadow: Literal["none", "approx", "dom"]
-    """shadows of hair and mesh: approx (fibres estimated from the depth behind the first) or dom (deep opacity maps)
-    [default dom]"""
+    """shadows of hair and mesh: approx (number of fibres estimated from the depth behind the first) or dom (deep
+    opacity maps) [default dom]"""
     scatter: Literal["none", "grid"]
-    """marschner: light that goes from fibre to fibre: grid (as among real hair) or none; it needs --shadow dom [default
-    grid]"""
+    """marschner: light that is scattered from fibre to fibre: grid computes it, none leaves it out; grid needs --shadow
+    dom [default grid]"""
     scatter_cells: int
     """resolution of --scatter grid: cells along the longest side of the hair [4 to 64; default 32]"""
     scatter_orders: int
-    """most orders of scattering that --scatter grid follows, fewer where the rest can be extrapolated [1 to 32; default
-    16]"""
+    """maximum orders of scattering of --scatter grid; it stops earlier when the rest can be extrapolated [1 to 32;
+    default 16]"""
     scatter_strands: int
-    """strands, at least, that stand for all hair when --scatter grid finds its light: 0 for all of them [0 to 1000000;
-    default 3000]"""
+    """minimum number of strands that represent all hair in --scatter grid; 0: use all strands [0 to 1000000; default
+    3000]"""
     shadow_size: int
     """width and height of a light's shadow map [64 to 2048 px; default 512]"""
     shadow_strands: int
-    """strands, at least, that stand for all hair in shadow maps of --raster blocks: 0 for all of them [0 to 1000000;
-    default 20000]"""
+    """minimum number of strands that represent all hair in shadow maps of --raster blocks; 0: use all strands [0 to
+    1000000; default 20000]"""
     shadow_opacity: float
     """share of the light that a fibre blocks [0 to 1; default 1]"""
     shadow_spacing: float
     """approx: distance between fibres along the light, in fibre radii [0.01 to 1000000; default 200]"""
     floor: Literal["none", "plane", "shadow"]
-    """what hair and mesh stand on: none; plane, matt, fading with distance; shadow, only the shadows on it, which
-    darken the background (its alpha if transparent) [default none]"""
+    """ground under hair and mesh: none; plane: matt, fading with distance; shadow: only its shadows, which darken the
+    background (its alpha if transparent) [default none]"""
     floor_height: Union[float, Literal["auto"]]
-    """height of the floor (y); auto: that of a ground in --colliders, else just below hair and mesh [-1000000 to
+    """height of the floor (y); auto: that of a ground in --colliders, otherwise just below hair and mesh [-1000000 to
     1000000 m; default auto]"""
     floor_color: Union[Numbers, str]
     """color of the floor, sRGB [0 to 1; default #a0a0a0]"""
     exposure: Union[float, Literal["auto"]]
-    """brightness of all light but the background; +1 doubles it; auto: from the style at rest as frame 0 shows it, the
-    same for all frames, and 0 for .pfm and .exr files and --aov [-20 to 20 EV; default auto]"""
+    """brightness of all but the background; +1 doubles it; auto: found from the rest shape in frame 0, for all frames;
+    0 for .pfm and .exr files and --aov [-20 to 20 EV; default auto]"""
     tone_map: Literal["none", "reinhard", "filmic"]
-    """how light brighter than white is mapped: none clips it, reinhard and filmic compress it; the background stays
-    [default filmic]"""
+    """how light brighter than white is displayed: none clips it, reinhard and filmic compress it; the background is not
+    changed [default filmic]"""
     mesh_color: Union[Numbers, str]
     """color of the mesh, sRGB [0 to 1; default #a67f6b]"""
     mesh_shading: Literal["matt", "skin"]
-    """surface of the mesh: matt, or skin, with a soft highlight and a soft edge of its shade [default skin]"""
+    """surface of the mesh: matt, or skin, with a soft highlight and a soft shadow edge [default skin]"""
     background: Union[Numbers, str]
     """background color, sRGB, or transparent [0 to 1; default #8a8d92]"""
     quality: Literal["normal", "draft", "final"]
     """preset: draft is --lod-width 1 --smooth 1 --shadow-size 256 --scatter-cells 16; final is --shadow dom
     --shadow-size 512 --samples 2 --smooth 3 --scatter-cells 48 [default normal]"""
     samples: int
-    """anti-aliasing: 2 or 4 draws each pixel as 2 x 2 or 4 x 4 samples and averages them in linear light; --aov depth,
+    """anti-aliasing: 2 or 4 renders 2 x 2 or 4 x 4 samples per pixel and averages them in linear light; --aov depth,
     tangent and strand use one sample [1 to 4; default 1]"""
     smooth: int
-    """parts per segment when strands are drawn as smooth curves; 1: straight segments [1 to 32; default 2]"""
+    """parts into which each segment is divided for smooth curves; 1: straight segments [1 to 32; default 2]"""
     curve: Literal["catmull-rom", "bspline"]
     """curve of --smooth: catmull-rom (centripetal, through all particles) or bspline (smoother, inside them) [default
     catmull-rom]"""
     lod_start: float
-    """camera distance from which fewer and wider strands are drawn [0 to 1000000 m; default 0]"""
+    """camera distance at which level of detail starts: beyond it fewer and wider strands are drawn [0 to 1000000 m;
+    default 0]"""
     lod_end: float
-    """camera distance from which only --lod-min of the strands are drawn; 0: off [0 to 1000000 m; default 0]"""
+    """camera distance from which only the share --lod-min of the strands is drawn; 0: level of detail is off [0 to
+    1000000 m; default 0]"""
     lod_min: float
-    """minimum share of the strands that is drawn [0.001 to 1; default 0.2]"""
+    """smallest share of the strands that is drawn [0.001 to 1; default 0.2]"""
     lod_width: float
-    """draw fewer and wider strands where fibres would be narrower than this; 0: off [0 to 100 px; default 0]"""
+    """draw fewer and wider strands if fibres would be narrower than this; 0: off [0 to 100 px; default 0]"""
     raster: Literal["auto", "quads", "blocks", "compute"]
-    """rasteriser: quads (triangles into sorted lists), blocks (composited on the CPU), compute (the same on the GPU);
-    auto: blocks on a CPU, compute on a GPU, quads with --oit [default auto]"""
+    """rasteriser: quads (triangles into sorted lists), blocks (compositing on the CPU), compute (the same on the GPU);
+    auto: blocks on a CPU driver, compute on a GPU, quads if --oit is given [default auto]"""
     oit: Literal["auto", "abuffer", "none"]
-    """how quads blend a pixel's fragments: abuffer sorts the nearest and blends the rest under them unsorted, none
-    sorts nothing; only for --raster quads; the others always sort every fragment [default auto]"""
+    """how --raster quads blends the fragments of a pixel: abuffer sorts the nearest and blends the rest behind them
+    unsorted, none sorts nothing; the other rasterisers always sort all fragments [default auto]"""
     oit_layers: int
-    """fragments per pixel that abuffer sorts; 0: 8, or 16 with --samples; only for --raster quads [0 to 64; default
-    0]"""
+    """fragments per pixel that --oit abuffer sorts; 0: 8, or 16 with --samples [0 to 64; default 0]"""
     least_seen: float
-    """share of a pixel: --raster blocks does not shade ribbons of which less is seen, nor draw what shines through a
-    pixel by less than twice as much; 0: all [0 to 0.5; default 0.001]"""
+    """--raster blocks skips work below this visibility, as a share of a pixel: ribbons seen less are not shaded, pixels
+    that let less than twice as much light through are finished; 0: off [0 to 0.5; default 0.001]"""
     thickness: Numbers
     """of all vertices, one strand behind the other, relative to its mean, which `radius` gives"""
     uv: Numbers

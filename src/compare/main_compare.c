@@ -41,56 +41,58 @@ typedef struct Command {
 
 static const Option OPTIONS[] = {
     {"pixel-tolerance", 0, OPTION_REAL, AT(pixel_tolerance), "LEVELS", 0, 255,
-     "a pixel passes if no channel differs by more, in levels of 255 [default 0]"},
+     "a pixel fails if one of its channels differs by more than this, in levels of 0 to 255 "
+     "[default 0]"},
     {"max-failing-pixels", 0, OPTION_STRING, AT(max_failing), "N|P%", 0, 0,
-     "how many pixels of an image may differ by more: a number or a percentage [default 0]"},
+     "number or percentage of the pixels of an image that may fail [default 0]"},
     {"max-flip", 0, OPTION_REAL, AT(max_flip), "X", 0, 1,
-     "maximum mean FLIP error; without the two options above it is the only limit"},
+     "largest mean FLIP error of an image; without the two options above it is the only limit"},
     {"platform", 0, OPTION_STRING, AT(platform), "NAME", 0, 0,
-     "A is a folder of goldens by platform: each is sought in A/NAME/, then in A/CLASS/ (cpu, "
-     "nvidia, amd, intel, gpu), then in A; tractrix-render --platform prints NAME. Without other "
-     "limits they are 0 levels, then 2 in all but 0.5 % of the pixels, then 8 but for 2 %"},
+     "A is a folder of goldens by platform: the golden of an image is the first that exists in "
+     "A/NAME/, in A/CLASS/ (cpu, nvidia, amd, intel, gpu) and in A; tractrix-render --platform "
+     "prints NAME. Default limits: in A/NAME/ images must be equal; in A/CLASS/ 2 levels and 0.5 % "
+     "failing pixels; in A 8 levels and 2 %"},
     {"any-platform", 0, OPTION_SWITCH, AT(any_platform), NULL, 0, 0,
-     "goldens in A itself count for GPUs, too"},
+     "use goldens in A itself for images of GPUs, too"},
     {"level", 0, OPTION_WORD, AT(level), "used|platform|class|common", 0, 0,
-     "the goldens that --update writes [default used: those compared with; new ones are common for "
-     "a CPU, of the class for a GPU]"},
+     "goldens that --update writes; used: the goldens that were compared, where a new golden is "
+     "common from a CPU, of the class from a GPU [default used]"},
     {"class-limits", 0, OPTION_STRING, AT(class_limits), "LEVELS,N|P%", 0, 0,
-     "--pixel-tolerance and --max-failing-pixels for goldens of the class"},
+     "--pixel-tolerance and --max-failing-pixels for goldens in A/CLASS/ only"},
     {"common-limits", 0, OPTION_STRING, AT(common_limits), "LEVELS,N|P%", 0, 0,
-     "the same for goldens of all platforms"},
+     "--pixel-tolerance and --max-failing-pixels for goldens in A itself only"},
     {"ppd", 0, OPTION_REAL, AT(ppd), "X", 1, 1000,
-     "pixels per degree of view, for FLIP [default 67]"},
+     "pixels per degree of the field of view, for FLIP [default 67]"},
     {"mask", 0, OPTION_STRING, AT(mask), "PATH", 0, 0,
-     "ignore the pixels that are black in this image; a folder or pattern: a mask for each image "
-     "of the same name or number"},
+     "image whose black pixels are ignored; a folder or a pattern has a mask for each image of the "
+     "same name or number"},
     {"heatmap", 0, OPTION_STRING, AT(heat_map), "PATH", 0, 0,
-     "PNG file of the FLIP error per pixel, black to yellow; a folder for folders and patterns, "
-     "with a file for each image that differs"},
+     "PNG file with the FLIP error of each pixel, black to yellow; for folders and patterns, a "
+     "folder with one file for each image that differs"},
     {"sheet", 0, OPTION_STRING, AT(sheet), "PATH", 0, 0,
-     "the same with A, B and the heat map side by side"},
+     "like --heatmap, with A, B and the heat map side by side"},
     {"html", 0, OPTION_STRING, AT(html), "FILE.html", 0, 0,
-     "write a page that shows every pair, with all images in it: for a browser, without a network"},
-    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
-    {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0, "write the results as JUnit XML, for CI"},
+     "write a page for a browser that shows every pair; it contains all images and needs no "
+     "network"},
+    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures to this JSON file"},
+    {"junit", 0, OPTION_STRING, AT(junit), "FILE", 0, 0,
+     "write the results to this JUnit XML file, for CI"},
     {"github", 0, OPTION_SWITCH, AT(github), NULL, 0, 0,
      "print annotations for GitHub Actions, and append a summary to $GITHUB_STEP_SUMMARY"},
     {"only-failures", 0, OPTION_SWITCH, AT(only_failures), NULL, 0, 0,
-     "list only images that are not the same, in lines and reports; counts are of all"},
+     "list only images that are not the same, in lines and reports; counts still cover all images"},
     {"unrendered", 0, OPTION_STRING, AT(unrendered), "FILE", 0, 0,
-     "images that B lacks because they could not be made: lines NAME: REASON, for the reports"},
+     "file with lines NAME: REASON for images that could not be rendered, for the reports"},
     {"commands", 0, OPTION_STRING, AT(commands), "FILE", 0, 0,
-     "what makes the images B: lines NAME: COMMAND, for the reports"},
+     "file with lines NAME: COMMAND, the commands that rendered the images B, for the reports"},
     {"only", 0, OPTION_STRING, AT(only), "NAME", 0, 0,
-     "compare only the image of this name, with %d or %04d those of any number"},
+     "compare only the image of this name; %d or %04d in the name stands for any number"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
-     "accept B: copy it over A where they differ or A has none"},
+     "accept B: copy it over A where the two differ or A is missing"},
     {"shrink", 0, OPTION_WHOLE, AT(shrink), "PX", 1, 16384,
-     "compare nothing: write the image A as the JPEG file B, at most PX wide and high, to be "
-     "looked "
-     "at"},
+     "compare nothing: write image A as the JPEG file B, at most PX pixels wide and high"},
     {"jobs", 'j', OPTION_WHOLE, AT(jobs), "N", 1, 1024,
-     "images compared in parallel [default: the number of processors]"},
+     "number of images that are compared in parallel [default: the number of processors]"},
     {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
 };
 
@@ -103,7 +105,8 @@ static const char *const NOTES[] = {
     "al. 2004 on luma. FLIP is that of Andersson et al. 2020: 0 looks the same, 1 is the largest "
     "difference. Equal images score exactly 0 (SSIM 1). Images with alpha are compared over black "
     "and over white, and the worse result counts.",
-    "In a mask white is compared and black ignored. Images without a mask are compared whole, but "
+    "White pixels of a mask are compared, black ones ignored. Images without a mask are compared "
+    "as a whole, but "
     "each mask must belong to an image.",
     NULL};
 
@@ -128,9 +131,8 @@ static const OptionsProgram PROGRAM = {
     .name = "tractrix-compare",
     .summary = "compare rendered images, frame by frame",
     .synopsis = "[OPTION]... A B",
-    .description =
-        "Measures how much the images B differ from the references A and prints a line for "
-        "each. The exit status is 1 if any differs by more than the limits.",
+    .description = "Compares the images B with the references A and prints one line for "
+                   "each image. The exit status is 1 if any image differs by more than the limits.",
     .options = OPTIONS,
     .option_count = sizeof OPTIONS / sizeof *OPTIONS,
     .notes = NOTES,

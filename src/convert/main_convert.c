@@ -34,91 +34,88 @@ static const char AXES[] = "y|z", FROM_AXES[] = "auto|y|z", UNITS[] = "m|cm|mm|i
 
 static const Option OPTIONS[] = {
     {"output", 'o', OPTION_STRING, AT(output), "FILE", 0, 0,
-     "file to write, in the format of its suffix (below); with one %d or %04d, a file per frame; - "
-     "is standard output, in the format of --format"},
+     "file to write, in the format of its suffix (see below); a name with %d or %04d: one file per "
+     "frame; -: standard output, in the format of --format"},
     {"format", 0, OPTION_WORD, AT(format), "auto" FORMAT_WORDS, 0, 0,
-     "format of FILE, whatever its name; auto uses the suffix, .tfx is tfx4, or text if strands "
-     "differ in their number of vertices [default auto]"},
+     "format of FILE; auto: as the suffix says, .tfx is tfx4, or text if strands differ in their "
+     "number of vertices [default auto]"},
     {"stats", 0, OPTION_SWITCH, AT(stats), NULL, 0, 0,
-     "print counts, lengths, curvature, spacing and a histogram of vertices, after all steps"},
-    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures as JSON"},
+     "print counts, lengths, curvature, spacing and a histogram of vertices per strand, after all "
+     "steps"},
+    {"json", 0, OPTION_STRING, AT(json), "FILE", 0, 0, "write all figures to this JSON file"},
     {"quiet", 'q', OPTION_SWITCH, AT(quiet), NULL, 0, 0, "print errors only"},
 
     {"unit", 0, OPTION_STRING, AT(unit), UNITS, 0, 0,
      "length of one unit of the hair files [default: as the file says, or guessed from format and "
      "size]"},
     {"up", 0, OPTION_WORD, AT(up), FROM_AXES, 0, 0,
-     "axis of the hair files that points up; auto: as the file says, else z in Cem Yuksel's .hair "
-     "files, y in others [default auto]"},
+     "axis of the hair files that points up; auto: as the file says, otherwise z in Cem Yuksel's "
+     ".hair files and y in all others [default auto]"},
     {"points-per-strand", 0, OPTION_WHOLE, AT(points), "N", 2, 65535,
-     "points of each strand of a .ply or .npy that is a mere list of points, vertices of each "
-     "cubic "
-     "curve [default: found from where consecutive points jump; 1 to 4 for each segment of a "
-     "curve]"},
+     "points per strand in .ply and .npy files that only list points, and vertices per cubic "
+     "curve; without it found from the jumps between strands, and 1 to 4 per curve segment"},
     {"array", 0, OPTION_STRING, AT(array), "NAME", 0, 0,
-     "name of a .npz file's array of positions [default: positions, points, or the first that can "
-     "be it]"},
+     "name of the array of positions in a .npz file; without it positions, points, or the first "
+     "array of a suitable shape"},
     {"strict", 0, OPTION_SWITCH, AT(strict), NULL, 0, 0,
      "reject files with defects instead of repairing them"},
     {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of the written file [default m]"},
     {"to-up", 0, OPTION_WORD, AT(to_up), AXES, 0, 0,
      "axis of the written file that points up [default y]"},
     {"width", 0, OPTION_REAL, AT(width), "M", 1e-7, 1,
-     "diameter of the strands in .usda and .abc, metres [default: the file's, or estimated from "
-     "their "
-     "number and size]"},
+     "diameter of the strands in .usda and .abc, metres [default: the file's, or estimated]"},
 
-    {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame [default 0]"},
-    {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999, "last frame [default: the last there is]"},
+    {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame to write [default 0]"},
+    {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999,
+     "last frame to write [default: the last frame of the input]"},
     {"partial", 0, OPTION_SWITCH, AT(partial), NULL, 0, 0,
-     "take the whole frames of a cache that is cut off, or of numbered files up to a gap; without "
-     "it such input is an error"},
-    {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "every Nth frame [default 1]"},
+     "if a cache is cut off or a numbered file is missing, use the frames before that; without "
+     "this option it is an error"},
+    {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "write every Nth frame [default 1]"},
     {"fps", 0, OPTION_REAL, AT(fps), "X", 1, 10000,
      "frames per second of .usda, .abc and .npz [default: the cache's; 60 for numbered files]"},
 
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0,
-     "head or body of the steps --fit, --attach and --push-out, and of the depth inside in "
-     "--stats: "
-     "Wavefront OBJ or PLY; of a file with samples the first"},
+     "head or body for --fit, --attach, --push-out and for the depth inside in --stats: Wavefront "
+     "OBJ or PLY; of a file with samples the first sample"},
     {"mesh-unit", 0, OPTION_STRING, AT(mesh_unit), UNITS, 0, 0,
-     "length of one unit of the mesh [default: as the file says, else as the first hair file]"},
+     "length of one unit of the mesh [default: as the file says, otherwise as for the first hair "
+     "file]"},
     {"mesh-up", 0, OPTION_WORD, AT(mesh_up), FROM_AXES, 0, 0,
-     "axis of the mesh that points up; auto: as the file says, else as in the first hair file "
-     "[default auto]"},
+     "axis of the mesh that points up; auto: as the file says, otherwise as for the first hair "
+     "file [default auto]"},
 
     {"subsample", 0, OPTION_STEP, AT(steps), "SHARE", 0, 0,
      "step: keep a random share of the strands, 0.1 or 10%"},
     {"nth", 0, OPTION_STEP, AT(steps), "N", 0, 0, "step: keep every Nth strand"},
     {"group", 0, OPTION_STEP, AT(steps), "N", 0, 0,
-     "step: keep the strands of group N (Alembic's groom_group_id, sections of a cache or .usda, "
-     "of "
-     "several files each is one, from 0)"},
+     "step: keep the strands of group N: Alembic's groom_group_id; the section of a cache or "
+     ".usda; the number of the input file, from 0, if there are several"},
     {"min-length", 0, OPTION_STEP, AT(steps), "M", 0, 0,
-     "step: drop strands shorter than this, metres"},
+     "step: drop strands that are shorter than M metres"},
     {"resample", 0, OPTION_STEP, AT(steps), "N", 0, 0,
-     "step: N vertices at equal distances along each strand"},
+     "step: place N vertices at equal distances along each strand"},
     {"resample-spline", 0, OPTION_STEP, AT(steps), "N", 0, 0,
-     "step: the same along a spline through the vertices (Catmull-Rom, centripetal)"},
+     "step: like --resample, along a spline through the vertices (centripetal Catmull-Rom)"},
     {"spacing", 0, OPTION_STEP, AT(steps), "M", 0, 0,
-     "step: vertices at equal distances of at most M metres"},
+     "step: place vertices at equal distances of at most M metres"},
     {"smooth", 0, OPTION_STEP, AT(steps), "N", 0, 0,
-     "step: N passes of a binomial filter over the vertices between root and tip"},
+     "step: run a binomial filter N times over the vertices between root and tip"},
     {"scale", 0, OPTION_STEP, AT(steps), "X", 0, 0, "step: scale about the origin"},
     {"rotate", 0, OPTION_STEP, AT(steps), "AXIS,DEG", 0, 0,
-     "step: rotate about x, y or z, such as y,90"},
-    {"translate", 0, OPTION_STEP, AT(steps), "X,Y,Z", 0, 0, "step: move, metres"},
+     "step: rotate about the axis x, y or z, for example y,90"},
+    {"translate", 0, OPTION_STEP, AT(steps), "X,Y,Z", 0, 0, "step: move by X,Y,Z metres"},
     {"reverse", 0, OPTION_STEP, AT(steps), NULL, 0, 0, "step: swap roots and tips"},
     {"fit", 0, OPTION_STEP, AT(steps), NULL, 0, 0,
-     "step: scale, turn and move all hair so that its roots come nearest to the mesh: for another "
-     "head than it was groomed on"},
+     "step: scale, rotate and move all hair so that the roots come as near to the mesh as "
+     "possible, to move a groom to another head"},
     {"attach", 0, OPTION_STEP, AT(steps), NULL, 0, 0,
      "step: move each strand so that its root lies on the mesh"},
     {"push-out", 0, OPTION_STEP, AT(steps), "M", 0, 0,
-     "step: move vertices that are inside the mesh, or nearer than M metres, out to M from it; "
-     "roots stay"},
+     "step: move vertices that are inside the mesh, or nearer to it than M metres, to a distance "
+     "of M outside; roots stay"},
     {"seed", 0, OPTION_WHOLE, AT(seed), "N", 0, 2147483647,
-     "start of the random numbers of --subsample, and of the shuffle that some formats need "
+     "start of the random numbers of --subsample and of the shuffle that some formats need "
      "[default 1]"},
 };
 

@@ -20,8 +20,8 @@ static const char DESCRIPTION[] =
 
 static const char *const NOTES[] = {
     "Options marked * set the value of every hair file; a scene file can give each its own.",
-    "--option VALUE and --option=VALUE are the same. --no-option switches an option without value "
-    "off. If an option is given twice, the last one counts. -- ends the options.",
+    "--option VALUE and --option=VALUE are the same. --no-option switches off an option without a "
+    "value. If an option is given twice, the last one counts. -- ends the options.",
     NULL};
 
 // What --help alone lists.
@@ -48,7 +48,7 @@ static const struct {
 
 static const char *const SCENE_KEYS[][3] = {
     {"sections", "[{\"file\": \"hair.tfx\", \"style\": 0.8}, ...]",
-     "the hair files, each with its own values"},
+     "the hair files, each with its own values of options marked *"},
     {"head",
      "{\"pivot\": [0, 1.5, 0], \"keys\": [{\"time\": 1, \"translate\": [0, 0, 0.1], "
      "\"rotate\": [0, 90, 0]}, ...]}",
@@ -58,43 +58,44 @@ static const char *const SCENE_KEYS[][3] = {
      "the same by formulas of the time t in s: + - * / ^, a ? b : c, pi, sin, exp, min, abs ... "
      "(those of muParser), smoothstep(a, b, x)"},
     {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
-     "a force that changes; a constant force is an array of three numbers"},
+     "gravity or wind that changes over time; a constant value is an array of three numbers"},
     {"camera",
      "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
      "\"fov\": 30}, ...]}",
-     "path of the camera; values that no key has come from the option of that name"},
+     "path of the camera; for values that are in no key, the option of that name holds"},
     {"colliders",
      "[{\"capsule\": [0, 1, 0, 0.08, 0, 1.4, 0, 0.05], \"frame\": \"head\"}, {\"ground\": 0}, ...]",
-     "shapes that hair must not cross: those of --colliders with their numbers (m); frame: head or "
-     "world"},
+     "shapes that hair must not cross, with the numbers of --colliders (m); frame: head (the shape "
+     "moves with the head) or world"},
     {"lights",
      "[{\"type\": \"directional\", \"direction\": [0, -1, 0], \"color\": \"#ffffff\", "
      "\"intensity\": 1}, {\"type\": \"spot\", \"position\": [0, 3, 1], \"distance\": 1, "
      "\"direction\": [0, -1, 0], \"inner\": 0, \"outer\": 45}, ...]",
-     "up to 8 lights: directional, point or spot; direction is the way the light travels. A point "
-     "or spot light has its intensity at `distance` (m) and falls off with the square of the "
-     "distance. A spot is full up to `inner` degrees off its axis and dark beyond `outer`. With "
-     "--shadow the first light casts shadows, and others with \"shadow\": true. Without this key "
-     "the lights of --look shine; an empty list leaves ambient light only"},
+     "up to 8 lights: directional, point or spot; direction is the direction in which the light "
+     "travels. A point or spot light has its intensity at `distance` (m) and falls off with the "
+     "square of the distance. A spot is full up to `inner` degrees off its axis and dark beyond "
+     "`outer`. The first light casts shadows, and so do others with \"shadow\": true (unless "
+     "--shadow is none). Without this key the lights are those of --look: three (studio) or two "
+     "(plain); an empty list leaves ambient light only"},
     {"$schema", "\"/usr/share/tractrix/scene.schema.json\"",
-     "for editors, which complete and check the file with this JSON schema; --help schema prints "
-     "it"},
+     "JSON schema with which editors complete and check the file; --help schema prints it"},
     {NULL, NULL, NULL}};
 
 static const OptionsChapter SCENE_FILES = {
     .topic = "scene",
     .title = "Scene files",
     .text =
-        "A scene file is a JSON object. Its keys are the options with '_' for '-': numbers, "
-        "true and false as such, X,Y,Z and WxH as arrays, the rest as strings. Options marked * "
-        "may stand in a section, or beside the sections for all of them. Paths are relative to "
-        "the file's folder. Numbers and colors of a section may change over time: {\"keys\": "
-        "[{\"time\": 0, \"value\": 0.5}, ...]} or, numbers, {\"formula\": \"0.5*exp(-t)\"}. "
+        "A scene file is a JSON object. Its keys are the options, with '_' in place of '-'. Values "
+        "are numbers, true or false, arrays for X,Y,Z and WxH, and strings for everything else. "
+        "Options marked * can be in a section, or beside the sections and then hold for all of "
+        "them. Paths are relative to the file's folder. Numbers and colors of a section can "
+        "change over time: {\"keys\": [{\"time\": 0, \"value\": 0.5}, ...]}; numbers also by a "
+        "formula: {\"formula\": \"0.5*exp(-t)\"}. "
         "Values between keyframes are interpolated smoothly (monotone "
         "cubic) or, with \"interpolation\": \"linear\", linearly. They are constant before the "
-        "first and after the last keyframe; a value that a keyframe leaves out is interpolated "
-        "between those that have it. Times are the scene's: 0 at frame 0, --speed times as "
-        "fast as the video.",
+        "first and after the last keyframe. If a keyframe lacks a value, the value is interpolated "
+        "between the keyframes that have it. Times are those of the scene: 0 at frame 0, and "
+        "--speed seconds per second of video.",
     .entries = SCENE_KEYS,
 };
 
@@ -102,7 +103,7 @@ static const char *const STATUS[][2] = {
     {"0", "done"},
     {"1", "failed while running (disk full, out of memory, ...), or --check found defects"},
     {"2", "an option or a combination of values is wrong"},
-    {"3", "a hair, mesh, scene or cache file is wrong, or the cache is of another scene"},
+    {"3", "a hair, mesh, scene or cache file is wrong, or the cache belongs to another scene"},
     {"4", "no usable OpenGL (4.3 core or better)"},
     {"130", "interrupted"},
     {NULL, NULL}};
