@@ -2,6 +2,7 @@
 #include "library/library.h"
 
 #include "base/parallel.h"
+#include "gpu/gl_defaults.h"
 #include "gpu/gpu_uniforms.h"
 #include "gpu/shader.h"
 
@@ -56,6 +57,13 @@ static void end_thread(TractrixDevice *device)
     pthread_join(device->thread, NULL);
 }
 
+static Result close_gpu(void *data, Error *error)
+{
+    (void)error;
+    gpu_destroy(data);
+    return RESULT_OK;
+}
+
 Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, Error *error)
 {
     if (device->process != getpid())
@@ -63,6 +71,9 @@ Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, 
                          "the device was opened before fork(): expected a device of this process");
     if (!device->borrowed) return ask(device, work, data, error);
     TRY(gpu_enter(&device->gpu, error));
+#ifndef NDEBUG
+    if (work != close_gpu) TRY(gl_defaults_check(error));
+#endif
     Result result = work(data, error);
     gpu_leave();
     return result;
@@ -73,13 +84,6 @@ Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, 
 void library_keep_device(TractrixDevice *device)
 {
     atomic_fetch_add(&device->users, 1);
-}
-
-static Result close_gpu(void *data, Error *error)
-{
-    (void)error;
-    gpu_destroy(data);
-    return RESULT_OK;
 }
 
 void library_drop_device(TractrixDevice *device)

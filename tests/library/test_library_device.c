@@ -583,6 +583,12 @@ static void works_in_a_borrowed_context(void **state)
     glEnable(0x1234); // an error of the host's is none of the library's
     WELL(tractrix_simulation_advance(simulation, NULL, &error));
     assert_defaults();
+#ifndef NDEBUG // the check of the host's state is one of debug builds
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    library_refused(tractrix_simulation_advance(simulation, NULL, &error), TRACTRIX_USAGE,
+                    "GL_PACK_ALIGNMENT is 0x1: expected 0x4");
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+#endif
     eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     library_refused(tractrix_simulation_advance(simulation, NULL, &error), TRACTRIX_NO_GL,
                     "no OpenGL context");
