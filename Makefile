@@ -407,6 +407,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, library, manuals, completion
 	install -m 644 LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff $(DOC_DIR)
 	install -m 644 $(wildcard docs/*.*) $(DOC_DIR)/docs
 	$(if $(wildcard docs/benchmarks/*.csv),install -D -m 644 -t $(DOC_DIR)/docs/benchmarks $(wildcard docs/benchmarks/*.csv))
+	install -D -m 644 -t $(DOC_DIR)/docs/notes $(wildcard docs/notes/*.md)
 	ln -sfn ../../tractrix $(DOC_DIR)/assets
 	$(foreach file,$(EXAMPLES),$(if $(wildcard $(file)/.),,install -D -m $(if $(shell test -x $(file) && echo x),755,644) $(file) $(DOC_DIR)/$(file) &&)) true
 

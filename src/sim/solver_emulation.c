@@ -67,6 +67,7 @@ const SolverType SOLVER_EMULATION = {
     .summary =
         "every particle pulls the strand along as tractrices, O(n^2), second order; thesis: as "
         "published, unstable without much drag",
+    .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"projected", "thesis"},
     .caution = caution,

@@ -26,7 +26,7 @@ done
 if [ "$(find "$root/usr/bin" -type f | wc -l)" = 8 ]; then good; else bad "not 8 programs: $(ls "$root/usr/bin")"; fi
 for file in include/tractrix.h lib/libtractrix.so.0 lib/libtractrix.a lib/pkgconfig/tractrix.pc; do is_file "$root/usr/$file"; done
 holds test "$(readlink "$root/usr/lib/libtractrix.so")" = libtractrix.so.0
-for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/look.md tractrix/demo.json tractrix/scene.schema.json; do
+for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/look.md doc/tractrix/docs/notes/solvers.md tractrix/demo.json tractrix/scene.schema.json; do
     is_file "$share/$file"
 done
 # Every example of the checkout, programs as such.
