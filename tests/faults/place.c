@@ -28,12 +28,14 @@ void place_run(const Place *place, const Run *run, const Attempt *attempt, Child
     char text[1000], program[4200], fault[200], log[4300], tmp[4300];
     char *words[RUN_WORDS];
     run_words(run, text, words);
-    for (int i = 0; attempt->resumes && !run->one_piece; ++i)
+    for (int i = 0; attempt->resumes && !run->one_piece; ++i) {
+        if (words[i] && strcmp(words[i], "--resume") == 0) break; // from its first run on
         if (!words[i]) {
             words[i] = "--resume";
             words[i + 1] = NULL;
             break;
         }
+    }
     if (!attempt->resumes) {
         folder_clear(place->run);
         folder_clear(place->tmp);

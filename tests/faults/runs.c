@@ -73,7 +73,7 @@ const Run RUNS[] = {
      .short_faults = 8,
      .grows = true,
      .measured = "s.json",
-     .arguments = SMALL "--frames 3 --cache c.cache --export e_%d.hair --stats s.json"},
+     .arguments = SMALL "--frames 3 --cache c.cache --resume --export e_%d.hair --stats s.json"},
     {.program = "render",
      .name = "cache to EXR",
      .measured = "f_0.exr f_1.exr", // the processor's name, which a run can do without
@@ -107,7 +107,7 @@ const Run RUN_KILLED[] = {
     {.program = "render", .name = "PNG frames", .arguments = LARGE "-o f_%02d.png"},
     {.program = "render", .name = "video", .one_piece = true, .arguments = LARGE "-o v.mp4"},
     {.program = "render", .name = "cache", .grows = true, .arguments = LARGE "--cache c.cache"},
-    {.program = "render", .name = "export", .arguments = LARGE "--export e_%02d.tfx"},
+    {.program = "render", .name = "export", .arguments = LARGE "--resume --export e_%02d.tfx"},
     {0},
 };
 
