@@ -9,10 +9,9 @@
 // --- Conditions. `of` and its parameters `section` are NULL for parameters of the run.
 
 #define CONDITION(name, holds)                                                                     \
-    static bool name(const Scene *scene, const Section *of)                                        \
+    static bool name(const Scene *scene, const Section *of, const SectionParams *section)          \
     {                                                                                              \
-        const SectionParams *section = of ? &of->params : NULL;                                    \
-        (void)scene, (void)section;                                                                \
+        (void)scene, (void)of, (void)section;                                                      \
         return holds;                                                                              \
     }
 static bool writes(const char *output, const char *suffix)
@@ -41,7 +40,7 @@ CONDITION(reads_mesh, !scene->given_mesh)
 // A head may be fitted where there is no mesh.
 CONDITION(has_head, *scene->run.mesh || scene->run.scalp != SCALP_NONE)
 CONDITION(has_colliders,
-          scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, of)))
+          scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, of, section)))
 CONDITION(collides, section->collide)
 CONDITION(collides_mesh, scene->run.collide_mesh)
 CONDITION(has_mesh, *scene->run.mesh)
@@ -77,7 +76,7 @@ CONDITION(moves, strcmp(section->algo, "none") != 0)
 // Each parameter's condition, and why it has no effect where that does not hold.
 static const struct {
     const char *names; // a blank between them
-    bool (*holds)(const Scene *scene, const Section *of);
+    bool (*holds)(const Scene *scene, const Section *of, const SectionParams *section);
     const char *why;
 } EFFECTS[] = {
     {"unit up group array points_per_strand", reads_file, "the hair is from an array"},
@@ -138,8 +137,9 @@ static const char *find_reason(const ParamInfo *info, const Scene *scene, const 
         snprintf(text, 80, "--algo %.40s has no such parameter", section->params.algo);
         return text;
     }
+    const SectionParams *params = section ? &section->params : NULL;
     for (size_t i = 0; i < sizeof EFFECTS / sizeof *EFFECTS; ++i)
-        if (lists(EFFECTS[i].names, info->name) && !EFFECTS[i].holds(scene, section)) {
+        if (lists(EFFECTS[i].names, info->name) && !EFFECTS[i].holds(scene, section, params)) {
             snprintf(text, 80, "it has no effect: %s", EFFECTS[i].why);
             return text;
         }

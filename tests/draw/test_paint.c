@@ -235,7 +235,7 @@ static void fibres_can_show_what_has_a_name(void **state)
     for (size_t i = 0; i < COLOR_NAME_COUNT; ++i) {
         if (!COLOR_NAMES[i].hair) continue;
         SectionParams params = make_params();
-        Error error;
+        Error error = {""};
         float through[3];
         assert_int_equal(params_parse(params_find("color"), &params, COLOR_NAMES[i].name, &error),
                          RESULT_OK);
