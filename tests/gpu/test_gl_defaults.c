@@ -53,11 +53,6 @@ static void states_that_differ_are_named(void **state)
     glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     finds("GL_POLYGON_MODE");
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    if (epoxy_gl_version() >= 45) {
-        glClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-        finds("GL_CLIP_ORIGIN");
-        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-    }
     well();
 }
 
