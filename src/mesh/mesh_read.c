@@ -1,35 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/mesh_read.h"
 
+#include "base/foreign.h"
 #include "mesh/obj.h"
 #include "mesh/ply_mesh.h"
 
-#include <string.h>
-
-#define BAKE                                                                                       \
-    "bake it: blender -b --python scripts/blender_hair.py -- export FILE --mesh x.npz --frames "   \
-    "scene (installed: /usr/share/tractrix/blender_hair.py)"
-
-// Files that are often taken for meshes and how to make a mesh of them, by their first bytes.
-static const struct {
-    const char *begin, *name, *advice;
-} FOREIGN[] = {
-    {"glTF", "GLB", BAKE},
-    {"Kaydara FBX", "FBX", BAKE},
-    {"BLENDER", "a Blender file (.blend)", BAKE},
-    {"PXR-USDC", "binary USD (.usdc)", "usdcat FILE -o x.usda"},
-    {"\x89HDF", "HDF5, as in old Alembic files (.abc)", "abcconvert -toOgawa FILE x.abc"},
-};
-
 static Result refuse_foreign(const char *path, const Bytes *bytes, Error *error)
 {
-    for (size_t i = 0; i < sizeof FOREIGN / sizeof *FOREIGN; ++i) {
-        size_t length = strlen(FOREIGN[i].begin);
-        if (bytes->size >= length && memcmp(bytes->data, FOREIGN[i].begin, length) == 0)
-            return error_set(error, RESULT_BAD_INPUT, "%s: %s, not a mesh: %s", path,
-                             FOREIGN[i].name, FOREIGN[i].advice);
-    }
-    return RESULT_OK;
+    const ForeignFile *foreign = foreign_find(bytes->data, bytes->size);
+    if (!foreign) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%s: %s, not a mesh: %s", path, foreign->name,
+                     foreign->mesh);
 }
 
 Result mesh_read(Mesh *mesh, const char *path, float unit, bool up_z, Error *error)

@@ -2,6 +2,7 @@
 #include "strands/strands_read.h"
 
 #include "base/doubles.h"
+#include "base/foreign.h"
 #include "strands/strands_edit.h"
 #include "strands/strands_mend.h"
 
@@ -12,51 +13,14 @@
 
 // --- Detection.
 
-#define BLENDER                                                                                    \
-    "convert it: blender -b --python scripts/blender_hair.py -- export FILE -o x.npz (installed: " \
-    "/usr/share/tractrix/blender_hair.py)"
-
-// Files that are often taken for hair and how to make hair of them, by their first bytes.
-static const struct {
-    const char *begin, *name, *advice;
-} FOREIGN[] = {
-    {"\x89HDF", "HDF5, as in old Alembic files (.abc)",
-     "rewrite it: abcconvert -toOgawa FILE x.abc"},
-    {"PXR-USDC", "binary USD (.usdc)", "convert it: usdcat FILE -o x.usda"},
-    {"BLENDER", "a Blender file (.blend)", BLENDER},
-    {"\x28\xb5\x2f\xfd", "compressed by zstd, as Blender files (.blend) are", BLENDER},
-    {"\x1f\x8b", "compressed by gzip, as old Blender files (.blend) may be",
-     "unpack it, or " BLENDER},
-    {"BZh", "compressed by bzip2", "unpack it"},
-    {"\xfd"
-     "7zXZ",
-     "compressed by xz", "unpack it"},
-    {"7z\xbc\xaf", "a 7-Zip archive", "unpack it"},
-    {"//Maya ASCII", "a Maya scene (.ma)", "export Alembic there"},
-    {"FOR4", "a Maya scene (.mb)", "export Alembic there"},
-    {"FOR8", "a Maya scene (.mb)", "export Alembic there"},
-    {"Kaydara FBX", "FBX", "it keeps no strands: export Alembic, USD or Wavefront lines"},
-    {"; FBX", "FBX", "it keeps no strands: export Alembic, USD or Wavefront lines"},
-    {"gl"
-     "TF",
-     "GLB, a scene of triangles", "it keeps no strands: export Alembic, USD or Wavefront lines"},
-    {"\x7fNSJ", "a Houdini file (.bgeo)", "export .usda there"},
-    {"\x89PNG", "a PNG image", "expected hair"},
-};
-
 // "PK", the name of the first file at byte 30.
 static Result refuse_zip(Reader *reader)
 {
     bool usd = memmem(reader->data, reader->size < 300 ? reader->size : 300, ".usd", 4) != NULL;
-    if (usd) return reader_fail(reader, "not supported: a USD package (.usdz): " BLENDER);
+    if (usd)
+        return reader_fail(reader, "not supported: a USD package (.usdz): " FOREIGN_BLENDER_HAIR);
     return reader_fail(reader, "not supported: a zip archive: unpack it (a .npz's first file is a "
                                ".npy)");
-}
-
-static bool begins_with(const Reader *reader, const char *begin)
-{
-    size_t length = strlen(begin);
-    return reader->size >= length && memcmp(reader->data, begin, length) == 0;
 }
 
 // Their comments look like Wavefront's.
@@ -73,10 +37,9 @@ static Result refuse_unknown(Reader *reader, bool xgen)
     if (xgen)
         return reader_fail(reader, "not supported: an XGen description: export its curves as "
                                    "Alembic in Maya");
-    if (begins_with(reader, "PK\x03\x04")) return refuse_zip(reader);
-    for (size_t i = 0; i < sizeof FOREIGN / sizeof *FOREIGN; i++)
-        if (begins_with(reader, FOREIGN[i].begin))
-            return reader_fail(reader, "not supported: %s: %s", FOREIGN[i].name, FOREIGN[i].advice);
+    if (reader->size >= 4 && memcmp(reader->data, "PK\x03\x04", 4) == 0) return refuse_zip(reader);
+    const ForeignFile *foreign = foreign_find(reader->data, reader->size);
+    if (foreign) return reader_fail(reader, "not supported: %s: %s", foreign->name, foreign->hair);
     size_t head = reader->size < 4096 ? reader->size : 4096;
     if (reader->data[strspn((const char *)reader->data, " \t\r\n")] == '{' &&
         memmem(reader->data, head, "\"asset\"", 7))

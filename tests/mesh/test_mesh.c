@@ -162,7 +162,7 @@ static void other_files_are_refused_with_what_makes_a_mesh_of_them(void **state)
     static const char *const cases[][2] = {
         {"glTF\x02", "m.obj: GLB, not a mesh: bake it: blender -b --python "
                      "scripts/blender_hair.py -- export FILE --mesh x.npz --frames scene"},
-        {"PXR-USDC", "m.obj: binary USD (.usdc), not a mesh: usdcat FILE -o x.usda"},
+        {"PXR-USDC", "m.obj: binary USD (.usdc), not a mesh: convert it: usdcat FILE -o x.usda"},
         {"Kaydara FBX Binary", "m.obj: FBX, not a mesh: bake it"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
