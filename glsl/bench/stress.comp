@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether strands still behave after a step (stress_run.h has the rules and their derivation). A
+// Whether strands still behave after a step (stress_bound.h has the rules and their derivation). A
 // strand a lane.
 //
 // Energy is a particle's mean, mass 1, in the frame that goes with the root without turning; x and

@@ -40,7 +40,7 @@ StressOptions stress_options_default(void)
 typedef struct Tally {
     const char *algo, *variant;
     int cases, sets, failures, shrunk;
-    int fluttering; // strands that may flutter (stress_run.h)
+    int fluttering; // strands that may flutter (stress_bound.h)
     int broken[STRESS_RULES];
     double worst[STRESS_RULES];
     double seconds;

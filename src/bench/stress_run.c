@@ -3,6 +3,7 @@
 #include "base/double3.h"
 #include "base/interrupt.h"
 #include "bench/bench_glsl.h"
+#include "bench/stress_bound.h"
 #include "gpu/gpu_dispatch.h"
 #include "gpu/gpu_uniforms.h"
 #include "scene/forces.h"
@@ -15,267 +16,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-
-// --- Bounds.
-
-enum { LENGTHS = 1, ENERGY = 2, REST = 4 };
-
-// What a solver does not promise, and why; by how much of S^2 its energy may rise otherwise.
-static const struct {
-    const char *algo, *variant; // variant NULL: all
-    unsigned lacks;
-    double rise;
-    const char *why;
-} EXCEPTIONS[] = {
-    {"split", NULL, 0, 0.3, "its tip goes by chords of the ball that it is in"},
-    {"split", "thesis", ENERGY, 0, "its tip's velocity is what the pulls of the root leave"},
-    {"emulation", "thesis", ENERGY | REST, 0, "gains energy, as published"},
-    {"tressfx", "tressfx4", LENGTHS | ENERGY | REST, 0, "its passes leave it stretched"},
-    {"chain", "", 0, 0.03, "its account leaves out what stiff springs of the style give"},
-    {"hybrid", "", 0, 0.03, "its balance takes a gain out of velocities, after the step's move"},
-    {"emulation", "projected", 0, 0.06, "so does its balance"},
-    {"dftl", "mueller", ENERGY | REST, 0, "its corrections give energy, as published"},
-};
-static const double USUAL_RISE = 0.02;
-
-static const double LENGTH_ERROR = 1e-5;
-static const double REST_MOVE =
-    3e-3; // of the length in a step: the tremor that docs/solvers.md has
-
-static const double PATIENCE = 30; // of each time constant, until a strand must lie still
-static const double CALM = 2; // stability number (simulation.h) up to which solvers come to rest
-
-static const double TRESSFX_RESOLVED = 4096; // roundings
-static const double MOST_FLUTTER = 0.5;      // the smallest at which a strand was found to: 0.52
-
-static const double NOISE_STEPS = 8; // steps whose rounding may add up, beside a random walk's
-
-static bool is(const StressCase *stress, const char *algo)
-{
-    return strcmp(stress->algo, algo) == 0;
-}
-
-static double odds_of(const SectionParams *params)
-{
-    return (double)params->style / fmax(1 - (double)params->style, 1e-6);
-}
-
-// Springs towards the style: 4 k L^2 and 2 pi b L for each radian.
-static double turned_springs(const StressCase *stress, const SectionParams *params)
-{
-    double odds = odds_of(params), length = stress->value[STRESS_length],
-           square = 4 * length * length;
-    double bend = 2 * PI * length * odds;
-    if (is(stress, "split")) return 0; // its style is drawn only
-    if (is(stress, "spring")) return bend * (double)params->spring_angular;
-    if (is(stress, "tressfx")) {
-        double passes = (double)params->tressfx_local_constraints_iterations / 2;
-        return square * fmax(passes, 1) * 4e4 * odds;
-    }
-    double springs = square * (double)params->style_stiffness * odds;
-    return springs + (is(stress, "chain") ? bend * (double)params->chain_bend : 0);
-}
-
-// Whether the parameters lie in the range in which docs/solver_derivations.md says that `tressfx
-// steady` gains no energy, with TressFX's fixed constants unchanged.
-static bool is_stable_tressfx(const StressCase *stress, const SectionParams *params)
-{
-    double dt = stress->value[STRESS_dt];
-    return dt > 1.0 / 241 && dt < 1.0 / 29 && params->tressfx_damping_rate == 60 &&
-           params->tressfx_local_constraints_iterations <= 8 &&
-           params->tressfx_local_share <= 0.5f && params->tressfx_local_max <= 0.95f;
-}
-
-// F: a strand's weight over the stiffness of its joints (stress_run.h), in TressFX's two passes a
-// frame, which `steady` keeps to.
-static double flutter_number(const StressCase *stress, const SectionParams *params, double g)
-{
-    double k = fmin((double)params->tressfx_local_constraint_stiffness,
-                    (double)params->tressfx_local_max),
-           firm = k / (1 - 0.75 * k) * odds_of(params),
-           share = fmin(firm / (1 + 0.75 * firm), (double)params->tressfx_local_max) *
-                   (double)params->tressfx_local_share;
-    double rate = (double)params->tressfx_damping_rate, square = 4 * share * rate * rate;
-    double n = stress->value[STRESS_n], link = stress->value[STRESS_length] / (n - 1);
-    if (!is(stress, "tressfx") || params->tressfx_local_constraints_iterations == 0) return 0;
-    return square > 0 ? fmin(n * g / (link * square), 1e18) : 0;
-}
-
-static void apply_promises(StressBound *bound, const StressCase *stress,
-                           const SectionParams *params, bool rests)
-{
-    unsigned lacks = 0;
-    bound->rise = USUAL_RISE;
-    // Shorter segments have no certain direction; TressFX's levers make much of that.
-    bound->resolved = is(stress, "tressfx") ? TRESSFX_RESOLVED : 64;
-    // What rounding turns a short segment by, by that it turns all behind it.
-    bound->rest_resolved = is(stress, "tressfx") ? TRESSFX_RESOLVED : 0;
-    for (size_t i = 0; i < sizeof EXCEPTIONS / sizeof *EXCEPTIONS; ++i)
-        if (strcmp(EXCEPTIONS[i].algo, stress->algo) == 0 &&
-            (!EXCEPTIONS[i].variant || strcmp(EXCEPTIONS[i].variant, stress->variant) == 0)) {
-            lacks |= EXCEPTIONS[i].lacks;
-            if (EXCEPTIONS[i].rise > 0) bound->rise = EXCEPTIONS[i].rise;
-        }
-    bool elastic = is(stress, "spring") || is(stress, "rope");
-    if (elastic) lacks |= params->stretch_drawn ? LENGTHS : ENERGY; // which it draws
-    if (is(stress, "tressfx") && !is_stable_tressfx(stress, params)) lacks |= ENERGY | REST;
-    if (lacks & ENERGY) bound->rise = -1;
-    bound->length_error = lacks & LENGTHS ? 0 : LENGTH_ERROR;
-    bound->rest_move = rests && !(lacks & REST) ? REST_MOVE * bound->length : 0;
-}
-
-// What is felt of gravity, m/s^2, at `turned` rad of the head: a groom holds its own part.
-static void find_felt(const StressBound *bound, const StressMove *move, double felt[3])
-{
-    const double *gravity = move->gravity;
-    RigidMotion own = {.rotation = {0}};
-    bool warped = false;
-    double held[3];
-    for (int k = 0; k < 4; ++k) warped |= (own.rotation[k] = move->warped[k]) != 0;
-    if (!warped) own.rotation[3] = 1;
-    rigid_motion_apply(&own, gravity, held);
-    double cosine = bound->held * cos(move->turned), sine = bound->held * sin(move->turned);
-    felt[0] = bound->share * (gravity[0] - cosine * held[0] + sine * held[1]);
-    felt[1] = bound->share * (gravity[1] - cosine * held[1] - sine * held[0]);
-    felt[2] = bound->share * (gravity[2] - bound->held * held[2]);
-}
-
-// What the groom holds, and how strong what is left can be.
-static void find_held(StressBound *bound, const StressCase *stress, const SectionParams *params)
-{
-    const double *value = stress->value;
-    double holds = solver_keeps_groom(params) ? value[STRESS_rest_share] : 0;
-    bool segments = is(stress, "split");
-    bound->hangs = segments && holds > 0;
-    bound->held = segments ? 0 : holds;
-    bound->share = (double)params->gravity_share;
-    double most =
-        value[STRESS_spin] > 0 || value[STRESS_warp] > 0 ? 1 + bound->held : fabs(1 - bound->held);
-    bound->g = bound->share * value[STRESS_gravity] * most;
-}
-
-// Whether what drag takes must have ended in the half of the steps in which the head rests.
-static bool must_rest(const StressCase *stress, const StressBound *bound, int steps)
-{
-    double time = bound->step_s * steps / 2, gravity = stress->value[STRESS_gravity];
-    double g = bound->share * gravity * fabs(1 - bound->held) + bound->drag * bound->wind;
-    if (stress->value[STRESS_gust] > 0 && bound->wind > 0) return false;
-    if (!(bound->drag > 0) || !(time > PATIENCE * 2 / bound->drag)) return false;
-    if (g > 0) return time > PATIENCE * bound->drag * bound->length / g;
-    // Only springs pull: 2L e^{-y N} is left after N steps of a share y, 2 L/(e N) a step at most.
-    return bound->held > 0 && steps / 2 > 2 / (exp(1) * REST_MOVE);
-}
-
-StressBound stress_run_bound(const StressCase *stress, const SectionParams *params, int steps)
-{
-    double spread = fmin(stress->value[STRESS_wind_spread], 89) * PI / 180;
-    StressBound bound = {
-        .step_s =
-            stress->value[STRESS_dt] * (is(stress, "rope") ? (double)params->rope_time_scale : 1),
-        .drag = (double)params->drag,
-        .wind = stress->value[STRESS_wind] * (1 + stress->value[STRESS_gust]) / cos(spread),
-        .length = stress->value[STRESS_length],
-        .stiffness = turned_springs(stress, params),
-        // What a jerk of the root gives to a strand, over its change of velocity, in that step
-        // only. Where it is by tens of links, chain's corrections of the lengths overshoot. In dftl
-        // no particle moves by more than its leader, and the root by the jerk; a slowed one that is
-        // thrown about its leader comes out there all the same.
-        .jerk = is(stress, "chain")  ? 1.5
-                : is(stress, "dftl") ? 2
-                                     : 1,
-        .carries = is(stress, "tressfx") || (params->clamped > 1 && stress->value[STRESS_n] > 2),
-        .bends = 16 * (is(stress, "chain") ? (double)params->chain_bend : 0) * odds_of(params) *
-                 (stress->value[STRESS_n] - 1) * stress->value[STRESS_length],
-        .small_steps = strcmp(stress->variant, "xpbd") == 0       ? params->rope_iterations
-                       : strcmp(stress->variant, "explicit") == 0 ? STRESS_MOST_SMALL_STEPS
-                                                                  : 1,
-    };
-    find_held(&bound, stress, params);
-    if (is(stress, "tressfx")) // which has more that makes hair go with the air
-        bound.drag += (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
-    double g = bound.g + bound.drag * bound.wind, links = stress->value[STRESS_n] - 1;
-    bound.rest_shortest = bound.step_s * bound.step_s * g * links / (CALM * CALM);
-    apply_promises(&bound, stress, params, must_rest(stress, &bound, steps));
-    if (bound.rise >= 0 || bound.rest_move > 0)
-        bound.flutter = flutter_number(stress, params, bound.g);
-    // Damping by a share in each step is drag of some strength.
-    if (is(stress, "rope") && params->rope_damping > 0) bound.drag = INFINITY;
-    return bound;
-}
-
-// Takes into account how what is felt of gravity has changed.
-static void step_gravity(StressBound *bound, const StressMove *move)
-{
-    Double3 felt, change;
-    find_felt(bound, move, felt);
-    if (bound->steps == 0) {
-        memcpy(bound->felt_first, felt, sizeof felt);
-        memcpy(bound->felt, felt, sizeof felt);
-    }
-    for (int k = 0; k < 3; ++k) change[k] = felt[k] - bound->felt[k];
-    bound->changes += double3_length(change);
-    bound->strongest = fmax(bound->strongest, double3_length(felt));
-    memcpy(bound->felt, felt, sizeof felt);
-}
-
-void stress_run_bound_step(StressBound *bound, const StressMove *move)
-{
-    double change = 0, speed = 0, head = fabs(move->angle) / bound->step_s,
-           warp = move->warp / bound->step_s, rate = head + warp,
-           angle = fabs(move->angle) + move->warp;
-    step_gravity(bound, move);
-    for (int k = 0; k < 3; ++k) {
-        double u = move->moved[k] / bound->step_s;
-        change += (u - bound->root_velocity[k]) * (u - bound->root_velocity[k]);
-        speed += u * u;
-        bound->root_velocity[k] = u;
-    }
-    double air = bound->wind + sqrt(speed);
-    bound->kicks += bound->changed = sqrt(change);
-    bound->steps += 1;
-    bound->turned += bound->stiffness * angle;
-    bound->turning = fmax(bound->turning, rate * bound->length);
-    // The axis of a warp's turn may be another one in each step.
-    bound->spun += fabs(head - bound->rate) + warp + bound->warp + rate * fmin(angle, 2);
-    bound->rate = head;
-    bound->warp = warp;
-    if (!(bound->drag > 0)) return;
-    bound->cap = fmax(bound->cap, air * air + 4 * bound->g * bound->length);
-    if (air > 0)
-        bound->blown = fmin(bound->blown + bound->drag * air * air / 2 * bound->step_s, bound->cap);
-}
-
-void stress_run_bound_fill(const StressBound *bound, bool last, StressParams *params)
-{
-    const double most = 1e18; // float32 squares it
-    double overshoot = (bound->jerk - 1) * bound->changed;
-    params->per_dt = (float)(1 / bound->step_s);
-    params->kicks = (float)fmin(bound->kicks + overshoot + bound->turning, most);
-    params->spun = bound->carries ? (float)fmin(bound->spun, most) : 0;
-    params->carried = bound->carries;
-    params->hangs = bound->hangs;
-    params->changes = (float)fmin(bound->changes, most);
-    params->strongest = (float)bound->strongest;
-    for (int k = 0; k < 3; ++k) {
-        params->gravity[k] = (float)bound->felt[k];
-        params->gravity_first[k] = (float)bound->felt_first[k];
-    }
-    params->added = (float)fmin(bound->blown + bound->turned, most * most);
-    params->rise = (float)bound->rise;
-    params->energy = bound->rise >= 0;
-    params->resolved = (float)bound->resolved;
-    params->rounding = 12 * 0x1p-24f;
-    params->bends = (float)fmin(bound->bends, most * most);
-    params->noise_steps = (float)(bound->small_steps * (NOISE_STEPS + sqrt(bound->steps)));
-    params->length_error = (float)bound->length_error;
-    params->rest_shortest = (float)bound->rest_shortest;
-    params->flutter = (float)bound->flutter;
-    params->most_flutter = (float)MOST_FLUTTER;
-    params->rest_resolved = (float)bound->rest_resolved;
-    params->rest_move = last ? (float)bound->rest_move : 0;
-}
-
-// --- Running.
 
 enum { JUMP_PERIOD = 64 };
 
@@ -408,8 +148,9 @@ static Result create_check(Run *run, const Gpu *gpu, Error *error)
 {
     const HairBatch *batch = &run->hair.batches[0];
     run->limits = &gpu->limits;
-    const ShaderDefine defines[] = {
-        {"GROUP_SIZE", gpu->limits.sizes.strands}, {"TIP", is(run->set, "split")}, {0}};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", gpu->limits.sizes.strands},
+                                    {"TIP", strcmp(run->set->algo, "split") == 0},
+                                    {0}};
     int64_t size = (int64_t)hair_slots(batch) * 16;
     void *zero = calloc((size_t)size, 1);
     if (!zero) return error_set(error, RESULT_FAILED, "no memory for verdicts");
@@ -486,7 +227,7 @@ static Result run_create(Run *run, const Gpu *gpu, const StressCase *strands, in
     forces->wind_spread = (float)value[STRESS_wind_spread];
     gpu_timer_create(&run->timer, false, true);
     TRY(stress_case_params(strands, &run->params, error));
-    run->bound = stress_run_bound(strands, &run->params, steps);
+    run->bound = stress_bound_create(strands, &run->params, steps);
     run->step = (SolverStep){.dt = value[STRESS_dt], .first = true, .number = 1};
     run->step.head = run->step.head_old = pose_at(run, 0);
     TRY(upload(run, gpu, strands, count, error));
@@ -523,7 +264,7 @@ static void look(Run *run, int i)
                            .used_most = (float)run->allowed,
                            .strand_count = batch->strand_count,
                            .vertex_count = batch->vertex_count};
-    stress_run_bound_fill(&run->bound, i == run->steps, &params);
+    stress_bound_fill(&run->bound, i == run->steps, &params);
     solver_pose(&run->solver, &run->step.head);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     gpu_uniforms_set(BIND_STEP, &params, sizeof params);
@@ -532,7 +273,7 @@ static void look(Run *run, int i)
     gpu_buffer_bind_texture(&batch->rest, BIND_REST);
     gpu_buffer_bind_storage(&run->worst, BIND_STRESS_WORST);
     gpu_buffer_bind_storage(&run->first, BIND_STRESS_FIRST);
-    if (is(run->set, "split")) {
+    if (strcmp(run->set->algo, "split") == 0) {
         SolverBuffer buffers[SOLVER_MAX_BUFFERS];
         solver_buffers(&run->solver, 0, buffers);
         gpu_buffer_bind_storage(buffers[1].buffer, BIND_TIPS);
@@ -571,7 +312,7 @@ static void take_step(Run *run, int i)
     }
     bool turns = i <= run->steps / 2;
     move.angle = turns ? fmin(run->set->value[STRESS_spin] * step->dt, PI) : 0;
-    stress_run_bound_step(&run->bound, &move);
+    stress_bound_step(&run->bound, &move);
     bool looked_at = is_looked_at(run, i);
     bound_set_after(&run->strands, i - 1);
     if (looked_at) keep_positions(run);

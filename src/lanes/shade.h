@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light that points of hair send to the eye. A point is shaded when the first ribbon that shows
-// it is composited, on whatever thread; the result is kept for other ribbons and blocks.
+// The light that points of hair send to the eye. A thread shades a point when it composites the
+// first ribbon that shows the point. Other ribbons and other blocks of pixels reuse the result.
 #pragma once
 
 #include "base/error.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stress test in its short form, every case that once broke an invariant, and the tool itself.
 #include "bench/stress.h"
+#include "bench/stress_bound.h"
 #include "bench/stress_run.h"
 #include "support/hair_fixture.h"
 
@@ -122,13 +123,13 @@ static void the_heads_motion_counts(void **state)
     StressParams out = {0};
     assert_int_equal(stress_case_read(&stress, "drag=0", NULL), RESULT_OK);
     assert_int_equal(stress_case_params(&stress, &params, NULL), RESULT_OK);
-    StressBound bound = stress_run_bound(&stress, &params, 100);
-    stress_run_bound_step(&bound, &still);
-    stress_run_bound_fill(&bound, false, &out);
+    StressBound bound = stress_bound_create(&stress, &params, 100);
+    stress_bound_step(&bound, &still);
+    stress_bound_fill(&bound, false, &out);
     assert_true(out.kicks == 0 && out.added == 0);
-    stress_run_bound_step(&bound, &moved);
-    stress_run_bound_step(&bound, &still);
-    stress_run_bound_fill(&bound, false, &out);
+    stress_bound_step(&bound, &moved);
+    stress_bound_step(&bound, &still);
+    stress_bound_fill(&bound, false, &out);
     assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // off at 30 m/s, and stopped
     assert_true(out.added == 0);
     params_destroy_section(&params);
@@ -159,12 +160,12 @@ static void a_groom_holds_its_gravity(void **state)
         SectionParams params;
         assert_int_equal(stress_case_read(&stress, cases[i].text, NULL), RESULT_OK);
         assert_int_equal(stress_case_params(&stress, &params, NULL), RESULT_OK);
-        StressBound bound = stress_run_bound(&stress, &params, 100);
+        StressBound bound = stress_bound_create(&stress, &params, 100);
         const StressMove first = {.gravity = {0, -10, 0}}, then = {.gravity = {0, -10, 0},
                                                                    .turned = cases[i].turned,
                                                                    .warped = {cases[i].warped}};
-        stress_run_bound_step(&bound, &first);
-        stress_run_bound_step(&bound, &then);
+        stress_bound_step(&bound, &first);
+        stress_bound_step(&bound, &then);
         assert_true(fabs(hypot(bound.felt[0], bound.felt[1]) - cases[i].felt) < 1e-9);
         assert_true(fabs(bound.changes - cases[i].changes) < 1e-9);
         params_destroy_section(&params);
