@@ -83,10 +83,13 @@ static void a_lit_groom_has_its_colour_on_average(void **state)
         int level[3];
     } cases[] = {
         {"demo", HEAD, "black", {0x26, 0x22, 0x20}},
+        {"demo", HEAD, "dark-brown", {0x3b, 0x2a, 0x21}},
         {"demo", HEAD, "'#693527'", {0x69, 0x35, 0x27}},
         {"demo", HEAD, "white", {0x9c, 0x9a, 0x96}},
         {"bob", HEAD, "red", {0x82, 0x3f, 0x27}},
+        {"bob", HEAD, "blond", {0x9c, 0x84, 0x5c}},
         {"fall", HEAD, "'#5e3f2b'", {0x5e, 0x3f, 0x2b}},
+        {"curls", HEAD, "ginger", {0x9a, 0x58, 0x33}},
         {"curls", HEAD, "dark-blond", {0x8a, 0x71, 0x50}},
         {"fur", BALL, "grey", {0x7c, 0x79, 0x74}},
     };
@@ -116,7 +119,10 @@ static void a_lit_groom_has_its_colour_on_average(void **state)
 // Whatever says the colour.
 static void all_colours_have_one_exposure(void **state)
 {
-    static const char *const said[] = {"--color black", "--color white", "--melanin 8",
+    static const char *const said[] = {"--color black",
+                                       "--color white",
+                                       "--albedo blond",
+                                       "--melanin 8",
                                        "--transmission '#ff8000'",
                                        "--tip-length 1 --tip-color white"};
     double first = 0;
