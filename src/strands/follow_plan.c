@@ -13,12 +13,13 @@ enum {
     NEIGHBOURS = 32,
     MOST_TRIANGLES = NEIGHBOURS * (NEIGHBOURS - 1) / 2,
     RADIUS_SAMPLES = 256,
-    FEWEST_FILLED = 32,     // strands
-    MOST_FILLED = 5000,     // strands, with their followers twice as many
-    FRAME_SEGMENTS = 16000, // what else a picture of 1280x720 costs, drawn and encoded
+    FEWEST_FILLED = 32,     // strands; fewer are wisps, not a groom
+    MOST_FILLED = 5000,     // strands; from here on, guides alone cover the scalp
+    FRAME_SEGMENTS = 16000, // cost of the rest of a 1280x720 frame, in drawn segments
     SHARE_NEIGHBOURS = 16
 };
-static const double MOST_SIDE = 6; // radii
+static const double MOST_SIDE = 6; // longest side of a triangle between guides, in follower radii
+// Two strands agree if the cosine of the angle between their chords is at least this.
 static const double LEAST_COSINE = 0.5;
 
 static float find_radius(const SectionParams *params, const Strands *strands)
@@ -87,14 +88,15 @@ static const float *vertex(const Strands *strands, uint32_t s, uint32_t j)
     return strands->position[strands->first[s] + j];
 }
 
-// From the root to vertex j.
+// The vector from the root of strand s to its vertex j.
 static void chord(const Strands *strands, uint32_t s, uint32_t j, Double3 way)
 {
     const float *root = vertex(strands, s, 0), *end = vertex(strands, s, j);
     for (int k = 0; k < 3; ++k) way[k] = (double)end[k] - (double)root[k];
 }
 
-// FNV-1a over the vertices: a guide's random numbers belong to its shape, not to its place.
+// FNV-1a hash of the vertices. It seeds a guide's random numbers, so they depend on the guide's
+// shape and not on its position in the file.
 static uint64_t shape_hash(const Strands *strands, uint32_t s)
 {
     uint64_t hash = 0xcbf29ce484222325;
@@ -108,7 +110,7 @@ static uint64_t shape_hash(const Strands *strands, uint32_t s)
     return hash;
 }
 
-// A triangle of guides around a root.
+// A triangle between a guide's root and the roots of two of its neighbours.
 typedef struct Triangle {
     uint32_t second, third;
     double area;
@@ -120,16 +122,16 @@ typedef struct Fan {
     double area;
 } Fan;
 
-// A guide and its neighbours, seen from its root.
+// A guide's neighbours. Positions are relative to the guide's root.
 typedef struct Neighbourhood {
     uint32_t count;
     Neighbour neighbour[NEIGHBOURS];
-    Double3 at[NEIGHBOURS];     // m, from the root
-    double flat[NEIGHBOURS][2]; // m, in the plane that fits best
+    Double3 at[NEIGHBOURS];     // m
+    double flat[NEIGHBOURS][2]; // m, projected onto the plane that fits the points best
 } Neighbourhood;
 
-// The direction in which the points spread least: the eigenvector of the least eigenvalue of
-// C = sum x x^T, which repeated multiplication by (trace C) I - C brings out.
+// The direction in which the points spread least: the eigenvector of C = sum x x^T with the
+// smallest eigenvalue. It is found by power iteration with (trace C) I - C.
 static void least_spread(const Neighbourhood *around, Double3 normal)
 {
     double c[3][3] = {{0}};
@@ -161,14 +163,16 @@ static void look_around(Neighbourhood *around, const Nearest *roots, uint32_t gu
         around->flat[i][1] = double3_dot(around->at[i], v);
 }
 
-// The middle m of the circle through the origin, a and b solves 2 m.a = a.a, 2 m.b = b.b; a point
-// p lies within it where p.p < 2 m.p. A point on the circle, to rounding, does not count.
+// Whether the circle through the origin, a and b contains none of the other points. Its centre m
+// solves 2 m.a = a.a and 2 m.b = b.b, and a point p is inside if p.p < 2 m.p. A point that lies on
+// the circle, to rounding, counts as outside.
 static bool is_delaunay(const Neighbourhood *around, uint32_t i, uint32_t j, double *area)
 {
     const double *a = around->flat[i], *b = around->flat[j];
     double aa = a[0] * a[0] + a[1] * a[1], bb = b[0] * b[0] + b[1] * b[1];
     double twice = a[0] * b[1] - a[1] * b[0];
-    if (!(fabs(twice) > 1e-6 * (aa + bb))) return false;                             // no triangle
+    // The three points are collinear.
+    if (!(fabs(twice) > 1e-6 * (aa + bb))) return false;
     double x = (aa * b[1] - bb * a[1]) / twice, y = (bb * a[0] - aa * b[0]) / twice; // 2 m
     for (uint32_t k = 0; k < around->count; ++k) {
         const double *p = around->flat[k];
@@ -179,7 +183,8 @@ static bool is_delaunay(const Neighbourhood *around, uint32_t i, uint32_t j, dou
     return true;
 }
 
-// Whether two strands lead the same way: a follower between them would hang in the air otherwise.
+// Whether two strands point in similar directions, at half their length and at the tip. A follower
+// between strands that diverge would float in the gap between them.
 static bool agree(const Strands *strands, uint32_t s, uint32_t t)
 {
     uint32_t n = strands_size(strands, s);
@@ -223,8 +228,9 @@ static void find_fan(Fan *fan, const Strands *strands, const uint32_t *guides, c
         }
 }
 
-// Evenly in one of the fan's triangles, each chosen by its area; then turned so that the guide has
-// the largest weight, which takes the triangle's other two thirds to the one at the guide.
+// Picks a triangle of the fan with a probability proportional to its area, and a point uniformly
+// within it. Then rotates the weights so that the guide has the largest one: this maps the other
+// two thirds of the triangle onto the third next to the guide.
 static void place_between(Follower *follower, const Fan *fan, Random *random)
 {
     double choice = random_real(random) * fan->area;
@@ -267,7 +273,7 @@ static void plan_guide(FollowPlan *plan, const Strands *strands, uint32_t s, uin
     }
 }
 
-// The roots, and a tree of them; both NULL on failure.
+// The roots of the guides and a search tree over them. Both are NULL on failure.
 static Result collect_roots(float (**root)[3], Nearest *nearest, const Strands *strands,
                             const uint32_t *guides, uint32_t count, Error *error)
 {
@@ -310,9 +316,9 @@ void follow_plan_destroy(FollowPlan *plan)
     *plan = (FollowPlan){0};
 }
 
-// The radius of a disc that is one root's share of the scalp around strand s: the area up to its
-// k-th neighbour in another place, over k. 0 if there is none. (The nearest neighbours alone say
-// little where roots stand in rows.)
+// The radius of a disc with the area that one root takes up on the scalp around strand s: the area
+// up to its k-th neighbour, divided by k. Neighbours at the same position do not count; returns 0
+// if there are no others. One nearest neighbour alone would mislead where roots stand in rows.
 static double share_radius(const Strands *strands, uint32_t s)
 {
     const float *from = vertex(strands, s, 0);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// By a unit of each pigment along the fibre's radius, red, green and blue.
+// Absorption by one unit of each pigment, per fibre radius (red, green, blue).
 static const double EUMELANIN[] = {0.419, 0.697, 1.37}, PHEOMELANIN[] = {0.187, 0.4, 1.05};
 
 static void decode(const float srgb[3], float linear[3])
@@ -19,19 +19,19 @@ static void decode(const float srgb[3], float linear[3])
 
 // --- Albedo.
 
-// The mean light that a head of hair shows, exposed so that it is 0.19 of hair that reflects 0.19,
-// falls with the absorption sigma by a fibre's radius as
-//     DARKEST + SPAN exp(-STEEPNESS sigma^BEND):
-// between what hair that lets nothing through still reflects and what hair without pigment sends
-// back. Fitted to demo, bob, fall and curls of assets/ and to three public grooms under the
-// studio's lights (docs/look.md has how far they are apart).
+// The apparent albedo of a head of hair as a function of sigma, the absorption per fibre radius:
+//     DARKEST + SPAN exp(-STEEPNESS sigma^BEND)
+// DARKEST is what opaque fibres still reflect; DARKEST + SPAN is what fibres without pigment
+// reflect. The exposure is such that hair with an albedo of 0.19 shows as 0.19. Fitted to demo,
+// bob, fall and curls of assets/ and to three public grooms under the studio lights (docs/look.md
+// gives the residuals).
 static const double DARKEST = 0.0145, SPAN = 0.315, STEEPNESS = 3.5, BEND = 0.73;
-static const double DARK_ROOM = 5e-4; // above DARKEST: black, sigma is 2.3
-static const double FITTED_AT = 12;   // degrees of azimuthal roughness
+static const double DARK_ROOM = 5e-4; // least value above DARKEST: black has sigma 2.3
+static const double FITTED_AT = 12;   // azimuthal roughness, degrees
 
-// How much the root of sigma grows with darkness, at an azimuthal roughness (degrees): Chiang et
-// al. 2016 (EGSR), equation 9, where b is the measure of the logistic lobe, 0..1, that has this
-// standard deviation (equation 8).
+// By how much the square root of sigma grows with darkness at an azimuthal roughness (degrees):
+// Chiang et al. 2016 (EGSR), equation 9. Its parameter b (0..1) is found by bisection as the value
+// for which the logistic lobe has this standard deviation (equation 8).
 static double chiang_scale(double roughness)
 {
     double scale = roughness * M_PI / 180 * sqrt(3) / M_PI, low = 0, high = 1;
@@ -47,14 +47,14 @@ static double chiang_scale(double roughness)
            0.245 * square * square * b;
 }
 
-// The factor of sigma at which hair of this azimuthal roughness looks as it does at FITTED_AT.
+// The factor on sigma that makes hair of this azimuthal roughness look as it does at FITTED_AT.
 static double find_widening(const SectionParams *params)
 {
     return pow(chiang_scale(FITTED_AT) / chiang_scale((double)params->azimuthal_roughness), 2);
 }
 
-// Of fibres that together show the colour, what a diameter lets through, exp(-2 sigma). A colour
-// that is brighter than hair can be keeps its hue.
+// Converts an apparent colour to the transmittance of a fibre's diameter, exp(-2 sigma). A colour
+// that is brighter than hair can be is scaled down and keeps its hue.
 static void absorb(double wider, float linear[3])
 {
     double brightest = fmax((double)linear[0], fmax((double)linear[1], (double)linear[2])),
@@ -66,18 +66,18 @@ static void absorb(double wider, float linear[3])
     }
 }
 
-// The inverse: the colour that fibres show together, of what a diameter lets through.
+// The inverse of absorb: converts the transmittance of a fibre's diameter to the apparent colour.
 static void reveal(const SectionParams *params, float linear[3])
 {
     double wider = find_widening(params);
     for (int k = 0; k < 3; ++k) {
-        double sigma = -log((double)linear[k]) / (2 * wider); // infinite: nothing comes through
+        double sigma = -log((double)linear[k]) / (2 * wider); // infinite if no light gets through
         linear[k] = (float)(DARKEST + SPAN * exp(-STEEPNESS * pow(fmax(sigma, 0), BEND)));
     }
 }
 
-// A colour as one sees it, as the shading has it: of kajiya what one sees, of marschner what a
-// fibre's diameter lets through.
+// Converts an apparent colour to what the shading model needs: Kajiya-Kay takes the colour itself,
+// Marschner the transmittance of a fibre's diameter.
 static void take_seen(const SectionParams *params, double wider, float linear[3])
 {
     if (params->shading == SHADING_MARSCHNER) absorb(wider, linear);
@@ -115,7 +115,7 @@ static double texel(const Image *map, int64_t x, int64_t y, int channel)
     return image_linear_from_srgb(level / 255.0);
 }
 
-// Texels have their colour in their middles.
+// Bilinear lookup that repeats; a texel's colour belongs to its centre.
 static void sample(const Image *map, const float uv[2], float linear[3])
 {
     double u = (double)uv[0], v = (double)uv[1];
@@ -169,7 +169,8 @@ static void paint_evenly(Paint *paint, const float color[3])
         memcpy(paint->color[v], color, 3 * sizeof *color);
 }
 
-// Of vertex j among n, what is the tip's: a share that grows along the last `length` of the strand.
+// How much of the tip's value vertex j of n takes: 0 up to `length` (a share of the strand) from
+// the tip, then growing to 1 at the tip.
 static float tip_share(float length, uint32_t j, uint32_t n)
 {
     float from_tip = 1 - (float)j / (float)(n - 1);
@@ -191,7 +192,7 @@ static void paint_strand(Paint *paint, const Strands *strands, const SectionPara
     }
 }
 
-// The file's thickness at vertex v of strand s; 1 where it has none.
+// The file's thickness at vertex v of strand s; 1 if the file has none.
 static double file_thickness(const Strands *strands, uint32_t s, uint32_t v)
 {
     if (strands->vertex_thickness) return fabs((double)strands->vertex_thickness[v]);
@@ -284,22 +285,24 @@ void paint_destroy(Paint *paint)
     *paint = (Paint){0};
 }
 
-// --- Thickness where nobody says.
+// --- Radius, if neither the user nor the file gives one.
 
 enum { MOST_SAMPLES = 500000, LEAST_CELLS = 8, MOST_CELLS = 64 };
-static const double FIBRES = 3;      // before a point of the silhouette, on average
-static const double SEEN = 0.5;      // share of the fibres that lies before the head or body
-static const double TIP_RATIO = 0.3; // of the radii, as --tip-ratio has it by default
-// Of the longest strand; hair is at most THICKEST, fur at most STUBBIEST.
+static const double FIBRES = 3;      // in front of a point of the silhouette, on average
+static const double SEEN = 0.5;      // share of the fibres that lie in front of the head or body
+static const double TIP_RATIO = 0.3; // tip radius over root radius, the default of --tip-ratio
+// Bounds of the radius, as shares of the longest strand. THICKEST applies to hair, STUBBIEST to
+// fur.
 static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400, STUBBIEST = 1.0 / 12;
-static const double WIDEST = 1.0 / 300; // of the silhouette's side: its mean area's root
+static const double WIDEST = 1.0 / 300; // for fur, over the root of the silhouette's mean area
 
-// Fibres in cells of the three views along the axes of the hair's box.
+// Density of fibres in a grid over the silhouette, for the three views along the axes.
 typedef struct Silhouette {
-    // Length of fibre, times its share of the radius at the root, over the cell's area (1/m).
+    // length of fibre in the cell, each piece weighted by its share of the root's radius, divided
+    // by the cell's area (1/m)
     double fibres[3][MOST_CELLS * MOST_CELLS];
-    int cells;   // along the box's longest side
-    double side; // m, of a cell
+    int cells;   // along the longest side of the box
+    double side; // m, of one cell
     float low[3];
 } Silhouette;
 
@@ -319,7 +322,7 @@ static void add_piece(Silhouette *silhouette, const double middle[3], const doub
     }
 }
 
-// In pieces of half a cell at most.
+// Adds a strand in pieces of at most half a cell, so that each piece belongs to one cell.
 static void add_strand(Silhouette *silhouette, const Strands *strands, uint32_t s, double weight)
 {
     uint32_t first = strands->first[s], n = strands_size(strands, s);
@@ -327,7 +330,7 @@ static void add_strand(Silhouette *silhouette, const Strands *strands, uint32_t 
         const float *a = strands->position[first + j], *b = strands->position[first + j + 1];
         double way[3], middle[3], length = 0;
         for (int k = 0; k < 3; ++k) way[k] = (double)b[k] - a[k], length += way[k] * way[k];
-        // No segment is longer than the box's diagonal.
+        // The box contains every segment, so `pieces` is bounded.
         int pieces = (int)ceil(2 * sqrt(length) / silhouette->side);
         for (int k = 0; k < 3; ++k) way[k] /= pieces;
         double share = weight * (1 - (1 - TIP_RATIO) * (j + 0.5) / (n - 1));
@@ -338,7 +341,8 @@ static void add_strand(Silhouette *silhouette, const Strands *strands, uint32_t 
     }
 }
 
-// The mean over the cells that hold any, and the views' mean area of those (m^2).
+// The mean over the cells that contain hair. `area`: the area of these cells (m^2), averaged over
+// the three views.
 static double mean_fibres(const Silhouette *silhouette, double *area)
 {
     double sum = 0, count = 0;
@@ -361,7 +365,8 @@ float paint_auto_radius(const Strands *strands, uint32_t followers)
     for (uint32_t s = 0; s < strands->strand_count; s += stride)
         longest = fmax(longest, strands_length(strands, s));
     if (!(longest > 0) || !(side > 0)) return 1e-4f; // nothing to draw
-    // Large enough to hold a few strands each, between which followers lie.
+    // Cells are large enough to hold a few strands, because followers fill the space between
+    // strands.
     int cells = (int)(sqrt((double)strands->strand_count / stride) / 2);
     cells = cells < LEAST_CELLS ? LEAST_CELLS : cells > MOST_CELLS ? MOST_CELLS : cells;
     Silhouette silhouette = {.cells = cells, .side = side / cells};

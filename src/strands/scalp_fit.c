@@ -7,22 +7,24 @@
 #include <string.h>
 
 enum { UNKNOWNS = 6, MOST_ROOTS = 4096, FEWEST_ROOTS = 32, PASSES = 20 };
-static const double STIFFNESS = 0.02;              // of the two terms, a share of the roots
-static const double HUBER = 1.345;                 // 95 % efficient for normal distances
-static const double LEAST = 0.05, MOST = 0.4;      // m, radii
-static const double MOST_RATIO = 2;                // of two radii
-static const double MOST_ERROR = 0.04;             // of the mean radius
-static const double ONE_WAY = 0.9, AROUND = 0.2;   // lengths of the mean direction
-static const double LEAST_UP = 0.1;                // of the mean direction
-static const double LEAST_OUT = 0.05;              // mean cosine to the normal
-static const double DEEP = 0.9, MOST_INSIDE = 0.1; // of the radius; of the vertices
+static const double STIFFNESS = 0.02;            // of the regularisation, per unit of weight
+static const double HUBER = 1.345;               // 95 % efficiency for normal errors
+static const double LEAST = 0.05, MOST = 0.4;    // m, permitted range of the radii
+static const double MOST_RATIO = 2;              // of the largest to the smallest radius
+static const double MOST_ERROR = 0.04;           // median distance over mean radius
+static const double ONE_WAY = 0.9, AROUND = 0.2; // length of the mean unit vector to the roots
+static const double LEAST_UP = 0.1;              // y of that vector
+static const double LEAST_OUT = 0.05;            // mean cosine of first segment and normal
+// A vertex counts as inside below DEEP of the radius; at most MOST_INSIDE of all vertices may be.
+static const double DEEP = 0.9, MOST_INSIDE = 0.1;
 
-// Roots and the directions of their first segments, unit length.
+// Roots and the unit directions of their first segments.
 typedef struct Roots {
     double (*at)[3], (*way)[3];
     double *distance, *weight;
     uint32_t count;
-    double middle[3], scale; // what `at` is from and of, m
+    // m; `at` holds (position - middle) / scale.
+    double middle[3], scale;
 } Roots;
 
 static void take_root(Roots *roots, const Strands *strands, uint32_t s)
@@ -35,7 +37,8 @@ static void take_root(Roots *roots, const Strands *strands, uint32_t s)
         way[k] = (double)b[k] - (double)a[k];
         length += way[k] * way[k];
     }
-    for (int k = 0; k < 3; ++k) way[k] /= sqrt(length); // neighbours lie apart
+    // Not 0: reading removed coincident neighbours.
+    for (int k = 0; k < 3; ++k) way[k] /= sqrt(length);
     roots->weight[roots->count++] = 1;
 }
 
@@ -56,7 +59,7 @@ static bool collect(Roots *roots, const Strands *strands, uint32_t sets)
     return true;
 }
 
-// Numbers of the size of 1, for the equations' sake.
+// Centres the roots and scales them to unit size, which keeps the equations well conditioned.
 static void normalise(Roots *roots)
 {
     double square = 0;
@@ -72,7 +75,7 @@ static void normalise(Roots *roots)
         for (int k = 0; k < 3; ++k) roots->at[i][k] /= roots->scale;
 }
 
-// Gauss with pivots; false if the matrix is singular.
+// Gaussian elimination with pivoting; false if the matrix is singular.
 static bool solve(double m[UNKNOWNS][UNKNOWNS + 1], double x[UNKNOWNS])
 {
     for (int i = 0; i < UNKNOWNS; ++i) {
@@ -97,7 +100,8 @@ static bool solve(double m[UNKNOWNS][UNKNOWNS + 1], double x[UNKNOWNS])
     return true;
 }
 
-// The ellipsoid of the weighted equations, in units of the roots. False: there is none.
+// Solves the weighted equations for an ellipsoid, in the normalised units of the roots. False if
+// the solution is not an ellipsoid.
 static bool fit_once(const Roots *roots, double centre[3], double radius[3])
 {
     double m[UNKNOWNS][UNKNOWNS + 1] = {{0}}, x[UNKNOWNS], total = 0;
@@ -129,7 +133,8 @@ static double mean_radius(const double radius[3])
     return cbrt(radius[0] * radius[1] * radius[2]);
 }
 
-// Of a point, as a share of the ellipsoid's size there: 1 on the surface.
+// The distance of p from the centre as a share of the distance to the surface in that direction: 1
+// on the surface.
 static double share_out(const double p[3], const double centre[3], const double radius[3])
 {
     double square = 0;
@@ -137,7 +142,7 @@ static double share_out(const double p[3], const double centre[3], const double 
     return sqrt(square);
 }
 
-// Sorts the distances and returns the one that `share` of them do not exceed.
+// Sorts the distances and returns the quantile `share`.
 static double quantile(Roots *roots, double share)
 {
     doubles_sort(roots->distance, roots->count);
@@ -157,7 +162,7 @@ static void measure(Roots *roots, const double centre[3], const double radius[3]
     }
 }
 
-// --- Whether it is a head.
+// --- Checks that the ellipsoid is a head.
 
 static const char *judge_directions(const Roots *roots, const double centre[3],
                                     const double radius[3])

@@ -62,7 +62,8 @@ StrandsMove strands_move_rotation(int axis, double angle_deg)
     StrandsMove move = strands_move_none();
     double quarters = angle_deg / 90, c = cos(angle_deg * turn / 360),
            s = sin(angle_deg * turn / 360);
-    if (quarters == rint(quarters)) c = rint(c), s = rint(s); // exactly
+    // Round at multiples of 90 degrees, so that these turns are exact.
+    if (quarters == rint(quarters)) c = rint(c), s = rint(s);
     int a = (axis + 1) % 3, b = (axis + 2) % 3;
     move.rotation[a][a] = move.rotation[b][b] = c;
     move.rotation[a][b] = -s;
@@ -70,7 +71,7 @@ StrandsMove strands_move_rotation(int axis, double angle_deg)
     return move;
 }
 
-// Terms that are 0 are left out, so that no -0 becomes 0.
+// Skips factors that are 0, because adding 0 would turn -0 into 0.
 static double turned(const double row[3], const float p[3])
 {
     double sum = -0.0;
@@ -113,9 +114,9 @@ void strands_to_unit(Strands *strands, double metres, bool up_z)
     strands->up_z = up_z;
 }
 
-// --- Which strands, and in what order.
+// --- Selecting and ordering strands.
 
-// Makes room in `to`, whose counts are set, for the optional arrays that all of the sets have.
+// Allocates in `to`, whose counts are set, each optional array that all of the sets have.
 static bool allocate_arrays(Strands *to, const Strands *sets, uint32_t count)
 {
     bool good = true, all;
@@ -133,8 +134,8 @@ static bool allocate_arrays(Strands *to, const Strands *sets, uint32_t count)
     return good;
 }
 
-// Copies strand s of `from` to be strand t of `to`, whose first[t] is set; `from` has all arrays
-// that `to` has.
+// Copies strand s of `from` to strand t of `to`. first[t] must be set, and `from` must have every
+// array that `to` has.
 static void copy_strand(Strands *to, uint32_t t, const Strands *from, uint32_t s)
 {
     uint32_t a = to->first[t], b = from->first[s], size = strands_size(from, s);
@@ -207,7 +208,7 @@ Result strands_shuffle(Strands *strands, uint32_t seed, Error *error)
     return result;
 }
 
-// --- Several sets as one.
+// --- Joining sets.
 
 Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error)
 {

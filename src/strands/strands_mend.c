@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double FARTHEST = 1e6;       // metres; squares of it are far from float32's limits
-static const double NEAREST_SHARE = 1e-7; // of the strand's largest coordinate
-static const double NEAREST = 1e-9;       // metres; its square is far above float32's smallest
+static const double FARTHEST = 1e6;       // metres; its square is far below the largest float32
+static const double NEAREST_SHARE = 1e-7; // as a share of the strand's largest coordinate
+static const double NEAREST = 1e-9;       // metres; its square is far above the smallest float32
 
 static void note(StrandsReport *report, DefectKind kind, uint64_t place)
 {
@@ -29,7 +29,8 @@ static bool is_usable(const float position[3])
     return true;
 }
 
-// Distance below which neighbours among the vertices begin .. end - 1 count as one.
+// Vertices begin .. end - 1 that are closer than this to their neighbour are merged with it. The
+// distance grows with the coordinates, as float32's rounding does.
 static double nearest_apart(const Strands *strands, uint32_t begin, uint32_t end)
 {
     double largest = 0.0;
@@ -61,7 +62,7 @@ static void move_strand(Strands *strands, uint32_t to, uint32_t from)
 }
 #undef MOVE
 
-// Whether every coordinate of strand s is usable; notes the defect if not.
+// Whether every coordinate of strand s is usable; otherwise notes the defect.
 static bool check_coordinates(const FormatSource *source, uint32_t s, uint32_t end,
                               StrandsReport *report)
 {
@@ -73,8 +74,9 @@ static bool check_coordinates(const FormatSource *source, uint32_t s, uint32_t e
     return true;
 }
 
-// Moves the vertices of strand s that are to stay to `to` and on, and notes in `kept`, unless it is
-// NULL, which they were. Returns how many they are, 0 for a strand to drop.
+// Moves the vertices of strand s that are kept to index `to` and the following ones. Writes their
+// old indices to `kept_from` unless it is NULL. Returns how many were kept; 0 if the whole strand
+// is dropped.
 static uint32_t mend_strand(FormatSource *source, uint32_t s, uint32_t end, uint32_t to,
                             uint32_t *kept_from, StrandsReport *report)
 {
@@ -109,7 +111,8 @@ static uint32_t mend_strand(FormatSource *source, uint32_t s, uint32_t end, uint
     return kept;
 }
 
-// Values of an optional array that are not finite; `width` floats for each of `count` records.
+// Replaces values of an optional array that are not finite. There are `width` floats for each of
+// `count` records.
 static void mend_values(float *values, size_t count, int width, float replacement,
                         StrandsReport *report, uint64_t place)
 {
@@ -120,7 +123,8 @@ static void mend_values(float *values, size_t count, int width, float replacemen
     }
 }
 
-// The place is that of the strand: an attribute's own is not kept.
+// Defects are reported at the strand's place in the file, because the places of single attribute
+// values are not stored.
 static void mend_attributes(FormatSource *source, uint32_t s, StrandsReport *report)
 {
     Strands *strands = &source->strands;
@@ -146,9 +150,9 @@ static Result fail_too_long(const FormatSource *source, uint32_t s, uint32_t siz
                      size, STRANDS_MAX_SIZE);
 }
 
-// Mends positions that are in metres, in place, to what strands_read promises. Counts what it does
-// in `report`; `kept_from`, [vertex_count] or NULL, takes the old number of each vertex. Fails
-// (RESULT_BAD_INPUT) only for a strand that is longer than the maximum.
+// Mends positions (in metres) in place, so that they keep the promises of strands_read. Counts the
+// defects in `report`. `kept_from`, [vertex_count] or NULL, receives the old index of each vertex
+// that is kept. Fails (RESULT_BAD_INPUT) only if a strand has too many vertices.
 static Result mend(FormatSource *source, const char *path, uint32_t *kept_from,
                    StrandsReport *report, Error *error)
 {
@@ -158,7 +162,7 @@ static Result mend(FormatSource *source, const char *path, uint32_t *kept_from,
     report->defects[DEFECT_UNREAD] = (Defect){(uint32_t)unread, source->unread_at};
     uint32_t kept_strands = 0, kept_vertices = 0, begin = 0;
     for (uint32_t s = 0; s < strands->strand_count; s++) {
-        // Mending goes in place: first[s + 1] is still the file's when strand s has been moved.
+        // Mending is in place: after strand s was moved, first[s + 1] still holds the file's value.
         uint32_t end = strands->first[s + 1];
         strands->first[s] = begin;
         begin = end;
@@ -176,7 +180,8 @@ static Result mend(FormatSource *source, const char *path, uint32_t *kept_from,
     return RESULT_OK;
 }
 
-// Of all frames, keeps the vertices that are left; source->frames then has as many as the strands.
+// Removes the dropped vertices from all frames. Afterwards each frame of source->frames has as many
+// vertices as the strands.
 static Result mend_frames(FormatSource *source, const char *path, uint32_t file_count,
                           const uint32_t *kept_from, Error *error)
 {
@@ -215,7 +220,7 @@ Result strands_mend(FormatSource *source, const char *path, StrandsReport *repor
     return result;
 }
 
-// --- Strands that come from no file.
+// --- Strands that were not read from a file.
 
 static bool all_finite(const float *values, size_t count)
 {

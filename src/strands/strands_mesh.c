@@ -10,20 +10,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Sorts them; 0 of none.
+// Sorts the values; returns 0 if there are none.
 static double median_of(double *values, size_t count)
 {
     doubles_sort(values, count);
     return count ? values[(count - 1) / 2] : 0;
 }
 
-// --- Strand by strand, by all threads.
+// --- Attaching and pushing, each strand for itself, on all threads.
 
 typedef struct Work {
     Strands *strands;
     const Surface *surface;
     double gap;
-    double *distance; // [vertex_count] of the vertices, before anything moves; roots: of attaching
+    // [vertex_count] Distances from the surface before anything was moved. When attaching, only the
+    // entries of the roots are set.
+    double *distance;
     bool attaches, pushes;
 } Work;
 
@@ -41,7 +43,8 @@ static void attach_strand(const Work *work, uint32_t s)
             strands->position[v][k] = (float)(strands->position[v][k] + shift[k]);
 }
 
-// Outwards along the way from the nearest point; another side may then be the nearest one.
+// Pushes the vertex away from its nearest point until it is `gap` outside the surface. Repeats,
+// because after a push another part of the surface may be nearer.
 static void push_vertex(const Surface *surface, double gap, double distance, SurfacePoint *nearest,
                         float position[3])
 {
@@ -50,7 +53,8 @@ static void push_vertex(const Surface *surface, double gap, double distance, Sur
     double3_from_float(position, at);
     for (int i = 0; i < MOST_TRIES && distance < gap; ++i) {
         double3_subtract(at, nearest->place, way);
-        // On the surface itself the way is the normal's; from inside it leads to the surface.
+        // At a distance of 0 there is no direction, so take the surface normal; from inside, the
+        // direction to the nearest point leads outwards.
         if (double3_normalize(way) < 1e-9)
             surface_normal(surface, nearest, way);
         else if (distance < 0)
@@ -123,7 +127,8 @@ Result strands_push_out(Strands *strands, const Surface *surface, double gap, St
             double distance = work.distance[v];
             shift->vertices += distance < gap;
             changed = changed || distance < gap;
-            if (distance < 0) work.distance[inside++] = -distance; // behind what is still to come
+            // Overwrites only entries already read.
+            if (distance < 0) work.distance[inside++] = -distance;
         }
         shift->strands += changed;
     }
@@ -136,7 +141,7 @@ Result strands_push_out(Strands *strands, const Surface *surface, double gap, St
 Result strands_find_depth(const Strands *strands, const Surface *surface, double *depth,
                           Error *error)
 {
-    // Nothing is changed.
+    // Neither flag is set, so the strands are not changed and the cast is safe.
     Work work = {.strands = (Strands *)(uintptr_t)strands, .surface = surface};
     TRY(visit(&work, error));
     for (uint32_t v = 0; v < strands->vertex_count; ++v) depth[v] = -work.distance[v];
@@ -150,12 +155,13 @@ enum { MOST_ROOTS = 1000, ROUGH_STEPS = 20, FINE_STEPS = 60 };
 static const double KEPT_SHARE = 0.9, MOST_STRETCH = 2, MOST_TURN_DEG = 45;
 static const double START_SCALES[] = {1, 0.75, 1.33};
 
-// Roots in their own place and moved, what is nearest to them, and how far that is.
+// Roots at their original (`root`) and current (`moved`) positions, their nearest points on the
+// surface (`near`) and the distances. `from`, `to` and `normal` hold only the pairs that count.
 typedef struct Pairs {
     uint32_t count, kept;
     double (*root)[3], (*moved)[3], (*near)[3], (*from)[3], (*to)[3], (*normal)[3];
     double *distance, *sorted; // negative inside
-    SurfacePoint *hint;        // where the nearest point was
+    SurfacePoint *hint;        // the last nearest point, where the next search begins
 } Pairs;
 
 static void destroy_pairs(Pairs *pairs)
@@ -192,8 +198,9 @@ static void apply(const StrandsMove *move, const double from[3], double to[3])
     }
 }
 
-// Moves the roots and finds what is nearest; `kept` are those that count, with their moved places
-// in `moved` and the direction to the surface in `normal`. Returns the median distance.
+// Moves the roots and finds their nearest points. The farthest roots are left out as outliers; the
+// first `kept` entries of `from`, `to`, `moved` and `normal` (direction to the surface) are those
+// of the others. Returns the median distance of all.
 static double pair_up(Pairs *pairs, const Surface *surface, const StrandsMove *move)
 {
     for (uint32_t i = 0; i < pairs->count; ++i) {
@@ -211,7 +218,7 @@ static double pair_up(Pairs *pairs, const Surface *surface, const StrandsMove *m
         double3_copy(pairs->root[i], pairs->from[pairs->kept]);
         double3_copy(pairs->near[i], pairs->to[pairs->kept]);
         double3_copy(pairs->moved[i], pairs->moved[pairs->kept]);
-        // Where the root is off the surface the way to it says more than the mesh's normal.
+        // Off the surface, the direction to the root is more reliable than the mesh's normal.
         Double3 way;
         double3_subtract(pairs->moved[i], pairs->near[i], way);
         if (double3_normalize(way) < 1e-6) double3_copy(pairs->normal[i], way);
@@ -237,7 +244,7 @@ static double find_spread(const double (*points)[3], uint32_t count, const doubl
     return sqrt(sum / count);
 }
 
-// The similarity from the kept roots to their nearest points.
+// The best similarity from the kept roots to their nearest points.
 static void improve(const Pairs *pairs, RigidMotion *turned, StrandsMove *move)
 {
     Double3 from, to, back;
@@ -254,9 +261,10 @@ static void improve(const Pairs *pairs, RigidMotion *turned, StrandsMove *move)
     double3_subtract(to, back, move->translation);
 }
 
-enum { UNKNOWNS = 7 }; // turn, growth, way
+enum { UNKNOWNS = 7 }; // 3 of the rotation, 1 of the scale, 3 of the translation
 
-// Solves A x = b by Gauss with the largest pivot; what A does not say stays 0.
+// Solves A x = b by Gauss-Jordan elimination with partial pivoting. Unknowns that A leaves
+// undetermined become 0.
 static void solve(double a[UNKNOWNS][UNKNOWNS + 1], double x[UNKNOWNS])
 {
     for (int k = 0; k < UNKNOWNS; ++k) {
@@ -275,9 +283,9 @@ static void solve(double a[UNKNOWNS][UNKNOWNS + 1], double x[UNKNOWNS])
     for (int k = 0; k < UNKNOWNS; ++k) x[k] = a[k][k] != 0 ? a[k][UNKNOWNS] / a[k][k] : 0;
 }
 
-// A small similarity about the roots' middle that brings them to the tangent planes of their
-// nearest points (Chen and Medioni 1992, "Object modelling by registration of multiple range
-// images"): so roots may slide along the surface.
+// One step of point-to-plane ICP (Chen and Medioni 1992, "Object modelling by registration of
+// multiple range images"): a small similarity about the centre of the roots that moves them onto
+// the tangent planes of their nearest points, so that roots may slide along the surface.
 static void slide(const Pairs *pairs, double damping, StrandsMove *move)
 {
     Double3 middle;
@@ -321,8 +329,9 @@ static void slide(const Pairs *pairs, double damping, StrandsMove *move)
     *move = all;
 }
 
-// From a start on; returns the median distance. Hair of quite another size than at the start is no
-// fit: all of it would lie in one point of the surface.
+// Refines `move` and returns the median distance. Stops if the scale departs by more than
+// MOST_STRETCH from the start: ICP would otherwise shrink the groom to a point on the surface,
+// where all distances are 0.
 static double refine(Pairs *pairs, const Surface *surface, StrandsMove *move)
 {
     RigidMotion turned = {.rotation = {0, 0, 0, 1}};
@@ -340,8 +349,8 @@ static double refine(Pairs *pairs, const Surface *surface, StrandsMove *move)
     return best;
 }
 
-// The box of the roots to the mesh's top, `share` times as wide as the mesh is over the roots'
-// height there.
+// A start that puts the bounding box of the roots at the top of the mesh. The box becomes `share`
+// times as wide as the part of the mesh at the height of the roots.
 static StrandsMove start_on_top(const Pairs *pairs, const Mesh *mesh, double share)
 {
     Double3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
@@ -353,7 +362,8 @@ static StrandsMove start_on_top(const Pairs *pairs, const Mesh *mesh, double sha
             low[k] = fmin(low[k], pairs->root[i][k]);
             high[k] = fmax(high[k], pairs->root[i][k]);
         }
-    // From the top down: a bust's shoulders are no head.
+    // Start with a tenth of the mesh's height and grow, so that the shoulders of a bust are not
+    // taken for the head.
     if (high[1] > low[1])
         move.scale = 0.1 * (double)(mesh_high[1] - mesh_low[1]) / (high[1] - low[1]);
     for (int turn = 0; turn < 8; ++turn) {

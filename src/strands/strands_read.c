@@ -13,7 +13,8 @@
 
 // --- Detection.
 
-// "PK", the name of the first file at byte 30.
+// Names the format of a zip archive. A zip archive begins with "PK" and has the name of its first
+// file at byte 30.
 static Result refuse_zip(Reader *reader)
 {
     bool usd = memmem(reader->data, reader->size < 300 ? reader->size : 300, ".usd", 4) != NULL;
@@ -23,7 +24,7 @@ static Result refuse_zip(Reader *reader)
                                ".npy)");
 }
 
-// Their comments look like Wavefront's.
+// XGen files begin with a comment like those of Wavefront files.
 static bool is_xgen(const Bytes *bytes)
 {
     const char *text = (const char *)bytes->data;
@@ -55,8 +56,8 @@ static Result refuse_unknown(Reader *reader, bool xgen)
 enum { LENGTH_SAMPLES = 1024 };
 static const double HEAD_SIZE = 0.35; // m, see strands_read
 
-// Diagonal of the box around all usable vertices and, if `with_origin`, the origin, in the file's
-// unit.
+// Diagonal of the bounding box of all finite vertices, in the file's unit. `with_origin` includes
+// the origin in the box.
 static double measure_diagonal(const FormatSource *source, bool with_origin)
 {
     double scale = source->scale != 0.0 ? fabs(source->scale) : 1.0, square = 0.0;
@@ -86,7 +87,7 @@ static double source_length(const FormatSource *source, uint32_t s)
     return source->scale != 0.0 ? length * fabs(source->scale) : length;
 }
 
-// Of at most LENGTH_SAMPLES strands, in the file's unit.
+// Median length of at most LENGTH_SAMPLES strands, in the file's unit.
 static double median_length(const FormatSource *source)
 {
     double length[LENGTH_SAMPLES] = {0};
@@ -101,15 +102,15 @@ static float guess_unit(const FormatSource *source, const Format *format)
 {
     if (format->centimetres) return measure_diagonal(source, true) < 5.0 ? 1.0f : 0.01f;
     double size = sqrt(measure_diagonal(source, false) * median_length(source));
-    // Where the ratios of two units to a head are equal: s / h = h / (0.01 s), and so on.
+    // The limit between two units is the geometric mean of the sizes that a head has in them.
     if (size < HEAD_SIZE * sqrt(100.0)) return 1.0f;
     return size < HEAD_SIZE * sqrt(100.0 * 1000.0) || format->no_millimetres ? 0.01f : 0.001f;
 }
 
 // --- Conversion.
 
-// DirectX's XMMatrixRotationRollPitchYaw(x, y, z), which AMD's loader uses: about z, then x, then
-// y.
+// The rotation of AMD's loader, DirectX's XMMatrixRotationRollPitchYaw(x, y, z): about z, then x,
+// then y.
 static void make_rotation(const double angle[3], double r[3][3])
 {
     double cx = cos(angle[0]), sx = sin(angle[0]), cy = cos(angle[1]), sy = sin(angle[1]);
@@ -123,7 +124,8 @@ static void make_rotation(const double angle[3], double r[3][3])
 }
 
 // To metres, y up: p' = unit * (translation + rotation * (scale * p)), then (x, y, z) -> (x, z, -y)
-// if `up_z`. Computed in double and rounded once; with unit 1 and none of the others, bits stay.
+// if `up_z`. Computed in double and rounded once. If nothing is to be converted, bits do not
+// change.
 static void convert_positions(const FormatSource *source, float (*positions)[3], size_t count,
                               double unit, bool up_z)
 {
@@ -193,7 +195,8 @@ static Result refuse_defects(const StrandsReport *report, const char *name, Erro
     return error_set(error, RESULT_BAD_INPUT, "%s (refused: --strict)", text);
 }
 
-// The report is not printed for a file that leaves nothing, so its first defect is named here.
+// The report is not printed for a file without a usable strand, so this message names the first
+// defect.
 static Result refuse_empty(const StrandsReport *report, const char *name, Error *error)
 {
     char text[900];
@@ -223,7 +226,7 @@ static Result finish(FormatSource *source, const char *name, const StrandsReadOp
     return strands->strand_count ? RESULT_OK : refuse_empty(report, name, error);
 }
 
-// A wish without effect is an error.
+// An option that would have no effect on this file is an error.
 static Result check_wishes(const FormatSource *source, const char *name, const char *format,
                            Error *error)
 {
@@ -238,7 +241,7 @@ static Result check_wishes(const FormatSource *source, const char *name, const c
     return RESULT_OK;
 }
 
-// Reads, mends and measures; what is read stays in the source.
+// Reads, mends and measures. The strands stay in `source`.
 static Result read_source(FormatSource *source, const char *name, const Bytes *bytes,
                           const StrandsReadOptions *options, StrandsReport *report, Error *error)
 {
@@ -295,7 +298,8 @@ Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *
     if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
     Bytes bytes;
     TRY(bytes_read_input(&bytes, path, error));
-    // Before text only: a binary file may begin with a number of these bytes.
+    // A byte order mark hides a text format from detection. Binary files are detected with it,
+    // since their first number may have the same bytes.
     if (format_detect(&bytes) == FORMAT_KINDS) bytes_drop_mark(&bytes);
     Result result = read_bytes(strands, frames, path, &bytes, options, report, error);
     bytes_destroy(&bytes);

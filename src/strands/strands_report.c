@@ -22,7 +22,8 @@ static uint32_t hash_root(const float root[3])
     return (hash ^ (hash >> 15)) * 0x2c1b3c6du;
 }
 
-// Counts with a hash table of strand numbers (plus 1; 0: free) of `mask` + 1 places, all zero.
+// Counts the strands whose root coincides with that of an earlier strand. `table` is a hash table
+// of `mask` + 1 entries, which are strand numbers plus 1, or 0 if free; it must be all 0.
 static uint32_t count_shared_roots(const Strands *strands, uint32_t *table, size_t mask)
 {
     uint32_t shared = 0;
@@ -153,7 +154,7 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
     return lines;
 }
 
-// What the line says of the unit and the axis.
+// Which guesses the printed line mentions: those of the unit and of the up axis.
 static void find_guesses(const StrandsReport *report, bool *unit, bool *up)
 {
     bool changes = report->unit_guessed && report->unit_used != 1.0f;

@@ -15,7 +15,7 @@ typedef struct Curve {
     bool spline;
 } Curve;
 
-// Vertex i, mirrored at the ends for -1 and `size`.
+// Vertex i. Indices -1 and `size` give a mirrored vertex beyond the end.
 static void take_vertex(const Curve *curve, int64_t i, double p[3])
 {
     int64_t last = (int64_t)curve->size - 1;
@@ -32,8 +32,8 @@ static double distance(const double a[3], const double b[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-// Barry and Goldman's pyramid: with knots t_i whose distances are the roots of those of the
-// vertices,
+// Catmull-Rom spline by Barry and Goldman's pyramid. The knots t_i are centripetal: their distances
+// are the square roots of the distances of the vertices.
 //   A_i = ((t_{i+1} - t) P_i + (t - t_i) P_{i+1}) / (t_{i+1} - t_i),       i = 0, 1, 2
 //   B_i = ((t_{i+2} - t) A_i + (t - t_i) A_{i+1}) / (t_{i+2} - t_i),       i = 0, 1
 //   C   = ((t_2 - t) B_0 + (t - t_1) B_1) / (t_2 - t_1)                    t_1 <= t <= t_2
@@ -60,14 +60,14 @@ static void evaluate(const Curve *curve, uint32_t segment, double share, double 
                            sizeof *curve->position) != 0;
     if (curve->spline && distinct) {
         evaluate_spline(curve, segment, share, point);
-        // Beside coincident neighbours there is none.
+        // Next to coincident vertices the spline is undefined; then interpolate linearly.
         if (isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2])) return;
     }
     const float *a = curve->position[segment], *b = curve->position[segment + 1];
     for (int k = 0; k < 3; k++) point[k] = a[k] + share * ((double)b[k] - a[k]);
 }
 
-// --- Lengths along it: of each chord from the root to its end.
+// --- Arc lengths: the length from the root to the end of each chord.
 
 static uint32_t chords_a_segment(const Curve *curve)
 {
@@ -86,8 +86,8 @@ static void measure(const Curve *curve, double *lengths)
     }
 }
 
-// The place of a length from the root, as a number of segments: 2.25 is a quarter into the third.
-// `chord` is where the search begins, and ends.
+// Converts a length from the root to a place in segments: 2.25 is a quarter along the third
+// segment. The search begins at `chord`, which is updated, so that successive calls are fast.
 static double find_place(const Curve *curve, const double *lengths, double length, uint32_t *chord)
 {
     uint32_t chords = chords_a_segment(curve), last = (curve->size - 1) * chords - 1;
@@ -97,7 +97,7 @@ static double find_place(const Curve *curve, const double *lengths, double lengt
     return (*chord + share) / chords;
 }
 
-// --- One strand.
+// --- Resampling one strand.
 
 static void mix(float *to, const float *from, int width, double place)
 {
@@ -140,12 +140,12 @@ static void resample_strand(Strands *to, const Strands *from, uint32_t s, bool s
     }
 }
 
-// --- All of them.
+// --- Resampling all strands.
 
 static double count_wanted(const Strands *strands, uint32_t s, const ResampleOptions *options)
 {
     if (options->count) return options->count;
-    // Half an ulp of a float32 length must not make one more.
+    // Half an ulp of a float32 length must not add a vertex.
     return fmax(2, ceil(strands_length(strands, s) / options->spacing * (1 - 1e-7)) + 1);
 }
 
@@ -176,7 +176,7 @@ static Result make_room(Strands *to, const Strands *from, const ResampleOptions 
     return good ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory to resample strands");
 }
 
-// What belongs to whole strands stays.
+// Moves the arrays that hold one value a strand.
 static void move_the_rest(Strands *to, Strands *from)
 {
 #define MOVE(array, width, mended) to->array = from->array, from->array = NULL;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads `.abc`, Alembic's Ogawa files: all curves that are drawn, in the order of the file, with
-// the transforms above them and, if they are wanted, all samples. Attributes are those of AbcGeom
-// and of Unreal's groom schema (groom_...), whose guides are left out where there are other
+// Reads `.abc`, Alembic's Ogawa files: all visible curves, in the order of the file, with the
+// transforms above them and, if the caller wants them, all samples. Reads the attributes of AbcGeom
+// and of Unreal's groom schema (groom_...). Unreal's guides are left out if the file has other
 // strands.
 #include "base/alembic.h"
 #include "strands/formats/abc_write.h"
@@ -17,25 +17,29 @@ static const char *const NAMES[CURVES_ARRAYS] = {"nVertices", "width",    "groom
                                                  "opacity",   "uv",       "st1",
                                                  "thickness", "mobility", "groom_group_id"};
 
-// Of AbcGeom's CurveType and BasisType.
+// Values of AbcGeom's CurveType and BasisType.
 static const char *const TYPES[] = {"cubic", "linear"};
 static const char *const BASES[] = {"", "bezier", "bspline", "catmullRom"};
 
-// An object's curves.
+// The curves of one object.
 typedef struct AbcCurves {
     BasisCurves curves;
-    OgawaProperties own; // of its ".geom"
+    OgawaProperties own; // properties of ".geom"
     int object;
-    uint32_t sampling, samples; // of positions and all transforms, those of which there are most
-    double *guide;              // [guide_count], 1 where a strand is one of Unreal's guides; or one
-    size_t guide_count;         // number for all
-    bool centimetres; // widths are Unreal's, which are in centimetres whatever the unit is
+    // The time sampling of the positions and the transforms above them that has the most samples.
+    uint32_t sampling, samples;
+    // [guide_count] 1 for each strand that is one of Unreal's guides. If guide_count is 1, the
+    // number applies to all strands.
+    double *guide;
+    size_t guide_count; // number for all
+    bool centimetres;   // widths are Unreal's: always in centimetres, whatever the file's unit
 } AbcCurves;
 
 typedef struct Abc {
     Alembic alembic;
-    AbcCurves *set;                         // [count]
-    uint32_t count, meshes, hidden, guides; // objects; strands that are left out
+    AbcCurves *set; // [count]
+    // `meshes` and `hidden` count objects that are left out, `guides` strands that are left out.
+    uint32_t count, meshes, hidden, guides;
     bool all_frames, lost_widths;
 } Abc;
 
@@ -60,8 +64,8 @@ static bool read_array(Abc *abc, const OgawaProperties *of, const char *name, Cu
     return set->curves.array[array].line != 0;
 }
 
-// Each array is the first of these that is there; those of Unreal's schema are arbitrary
-// parameters.
+// Fills each array from the first source in the table that the file has. The properties of Unreal's
+// schema are arbitrary geometry parameters.
 static void read_attributes(Abc *abc, AbcCurves *set)
 {
     static const struct {
@@ -121,13 +125,13 @@ static void read_kind(Abc *abc, AbcCurves *set)
     }
     strcpy(set->curves.type, TYPES[type]);
     strcpy(set->curves.basis, type ? "" : BASES[basis]);
-    // Hair begins at its first point, and has a vertex for each, if its curves do not say
-    // otherwise.
+    // Only curves other than Bezier are pinned, so that hair begins at its first point, and get one
+    // vertex for each control point.
     strcpy(set->curves.wrap, basis == 1 ? "" : "pinned");
     set->curves.per_segment = basis == 1 ? 0 : 1;
 }
 
-// Positions at their times; all of them if they are wanted.
+// Reads the positions of the first sample, or of all samples if the caller wants all frames.
 static void read_points(Abc *abc, AbcCurves *set, const OgawaProperty *position)
 {
     Reader *reader = abc->alembic.file.reader;
@@ -192,7 +196,7 @@ static void read_all(Abc *abc)
 
 // --- Times.
 
-// Of the object that has most of them.
+// The times of the frames: those of the object with the most samples.
 typedef struct Times {
     uint32_t sampling, count;
 } Times;
@@ -234,7 +238,8 @@ static bool is_guide(const AbcCurves *set, uint32_t s)
     return i < set->guide_count && set->guide[i] != 0;
 }
 
-// All strands one behind the other, and which of them stay: without guides, if there are others.
+// Joins the sets. `which` receives the numbers of the strands that are kept: all but the guides, or
+// all if there are only guides.
 static Result join(Abc *abc, const Strands *sets, Strands *all, uint32_t **which, uint32_t *kept)
 {
     Reader *reader = abc->alembic.file.reader;
@@ -251,7 +256,8 @@ static Result join(Abc *abc, const Strands *sets, Strands *all, uint32_t **which
     return RESULT_OK;
 }
 
-// The kept strands' positions at a time to `to`; `room`: [first[strand_count]] of all.
+// Writes the positions of the kept strands at a time to `to`. `room` holds all vertices, and
+// first[s] is the first vertex of strand s there.
 static void place_all(const Abc *abc, const Strands *sets, const Strands *kept,
                       const uint32_t *which, const uint32_t *first, double time, float (*room)[3],
                       float (*to)[3])
@@ -317,8 +323,9 @@ static Result make_source(Abc *abc, FormatSource *source, const Strands *sets, T
     return result;
 }
 
-// Widths of Unreal's schema are left out where others are the file's.
-// Returns the metres of a unit of widths, 0 where it is that of positions.
+// Unreal's widths are in centimetres. If all objects have Unreal's widths, returns the metres of
+// their unit. Otherwise drops Unreal's widths and returns 0: the other widths are in the unit of
+// the positions.
 static double unite_widths(const Abc *abc, Strands *sets, double time)
 {
     uint32_t centimetres = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The schema of curves, in the order in which Alembic's own writer (AbcGeom) has its parts.
+// Writes the curve schema with its properties in the same order as Alembic's own writer (AbcGeom).
 #include "strands/formats/abc_write.h"
 
 #include <errno.h>
@@ -11,7 +11,7 @@ enum { LIBRARY_VERSION = 10800, HASH_BYTES = 32 };
 
 // --- The strands' properties.
 
-// How AbcGeom calls a rate.
+// AbcGeom's metadata of a property. AbcGeom calls the rates con, uni and vtx.
 static void describe(char meta[160], CurvesRate rate, const char *interpretation, uint32_t extent,
                      const char *pod)
 {
@@ -21,7 +21,7 @@ static void describe(char meta[160], CurvesRate rate, const char *interpretation
              *interpretation ? ";" : "", extent, pod);
 }
 
-// Floats `stride` apart, each `factor` times.
+// Adds floats that lie `stride` apart, each multiplied by `factor`.
 static void add_floats(AbcWriter *writer, OgawaCompound *to, const char *name,
                        const char *interpretation, const float *value, CurvesRate rate,
                        uint32_t extent, uint32_t stride, double factor)
@@ -52,7 +52,7 @@ static void add_groups(AbcWriter *writer, OgawaCompound *to)
     ogawa_add_one(&writer->ogawa, to, "groom_group_id", meta, true, OGAWA_I32, 1, &block);
 }
 
-// One a vertex, as Unreal wants it.
+// Unreal expects one colour for each vertex.
 static void add_color(AbcWriter *writer, OgawaCompound *to)
 {
     const Strands *strands = writer->strands;
@@ -93,7 +93,7 @@ static void add_version(AbcWriter *writer, OgawaCompound *to)
     ogawa_add_compound(&writer->ogawa, to, ".userProperties", "", &user);
 }
 
-// What AbcGeom's schema has no place for.
+// Attributes that are not part of AbcGeom's schema.
 static void add_arbitrary(AbcWriter *writer, OgawaCompound *to)
 {
     const Strands *strands = writer->strands;
@@ -143,7 +143,7 @@ static uint64_t put_curves(AbcWriter *writer)
     OgawaBlock sizes = {0}, kind = {0};
     for (uint32_t s = 0; s < strands->strand_count; ++s)
         ogawa_add_number(&sizes, strands_size(strands, s), 4);
-    ogawa_add_number(&kind, 1, 4); // linear, with ends, without a basis
+    ogawa_add_number(&kind, 1, 4); // linear, not periodic, no basis
     add_boxes(writer, &geom);
     ogawa_add_samples(&writer->ogawa, &geom, "P", "geoScope=vtx;interpretation=point", true,
                       OGAWA_FLOAT, 3, writer->samples, writer->frame_count);
@@ -172,8 +172,8 @@ static uint64_t put_transform(AbcWriter *writer)
 
 // --- Objects.
 
-// An object of properties and at most one child. The hashes, by which readers may tell whether two
-// objects differ, are the key of its places.
+// Writes an object with properties and at most one child. Readers compare objects by their hashes;
+// here the hash is that of the parts' file offsets, which differ between objects.
 static uint64_t put_object(AbcWriter *writer, uint64_t properties, const char *name,
                            const char *meta, uint64_t child)
 {
@@ -249,7 +249,8 @@ static Result begin(AbcWriter *writer, const OutFile *file, const Strands *stran
     *writer = (AbcWriter){
         .file = *file, .ogawa = {.stream = file->stream}, .strands = strands, .options = *options};
     curves_look_complete(&writer->options.look, strands);
-    // Only a file of its own can be gone back in: no pipe, and no file that output is appended to.
+    // The root's offset in the header is only known at the end. A pipe, or a file that output is
+    // appended to, cannot be rewound to write it, so the content is buffered in memory.
     writer->buffered = !file->temporary;
     if (writer->buffered)
         writer->ogawa.stream = open_memstream(&writer->memory, &writer->memory_size);
@@ -258,7 +259,7 @@ static Result begin(AbcWriter *writer, const OutFile *file, const Strands *stran
     return RESULT_OK;
 }
 
-// All but closing the file.
+// Writes everything but does not close the file.
 static Result end(AbcWriter *writer, Error *error)
 {
     uint64_t root = put_archive(writer);
@@ -271,7 +272,7 @@ static Result end(AbcWriter *writer, Error *error)
         if (there && fseek(stream, 0, SEEK_END) == 0) return RESULT_OK;
         return error_set(error, RESULT_FAILED, "%s: %s", writer->file.path, strerror(errno));
     }
-    // What a stream in memory ends with is where it stands.
+    // A memory stream reports its current position as its size after a flush.
     if (fflush(stream) != 0 || ferror(stream))
         return error_set(error, RESULT_FAILED, "%s: no memory", writer->file.path);
     size_t size = writer->memory_size;

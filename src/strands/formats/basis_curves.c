@@ -17,7 +17,7 @@ void basis_curves_destroy(BasisCurves *curves)
     *curves = (BasisCurves){0};
 }
 
-// --- Where a strand's vertices lie among a curve's control points.
+// --- The strand's vertices as combinations of the curve's control points.
 
 typedef enum Basis { BASIS_LINEAR, BASIS_BEZIER, BASIS_BSPLINE, BASIS_CATMULL_ROM } Basis;
 
@@ -33,7 +33,7 @@ static Basis basis_of(const BasisCurves *curves)
     return strcmp(curves->basis, "catmullRom") == 0 ? BASIS_CATMULL_ROM : BASIS_BEZIER;
 }
 
-// Segments of a curve of `count` control points; 0: there can be no such curve.
+// Segments of a curve with `count` control points; 0 if no curve can have that many.
 static uint32_t count_segments(const BasisCurves *curves, uint32_t count)
 {
     Basis basis = basis_of(curves);
@@ -43,7 +43,7 @@ static uint32_t count_segments(const BasisCurves *curves, uint32_t count)
     return count >= 4 ? count - 3 : 0;
 }
 
-// Vertices of the strand.
+// The number of vertices of the strand.
 static uint32_t count_vertices(const BasisCurves *curves, uint32_t count, uint32_t per_strand)
 {
     Basis basis = basis_of(curves);
@@ -53,13 +53,14 @@ static uint32_t count_vertices(const BasisCurves *curves, uint32_t count, uint32
     return count_segments(curves, count) * each + 1;
 }
 
-// A vertex as a sum of 4 control points (numbers within the curve), and its place by segments.
+// A vertex as a weighted sum of 4 control points (indices within the curve), and its place along
+// the curve in segments.
 typedef struct Blend {
     uint32_t from[4];
     double weight[4], along;
 } Blend;
 
-// Of the points a, b, c, d of a segment, at t in 0 .. 1.
+// Weights of the points a, b, c, d of a segment at t in 0 .. 1.
 static void find_weights(Basis basis, double t, double w[4])
 {
     double u = 1 - t;
@@ -74,8 +75,9 @@ static void find_weights(Basis basis, double t, double w[4])
     }
 }
 
-// Vertex j of n on a curve of `count` points. Pinned curves have a point in front of the first one,
-// 2 p0 - p1, and one behind the last, likewise; their weights go to the points that make them.
+// Vertex j of n on a curve of `count` points. A pinned curve has a phantom point 2 p0 - p1 before
+// its first point, and likewise one after the last; the weights of phantom points are distributed
+// to the two points that define them.
 static Blend blend_at(const BasisCurves *curves, uint32_t count, uint32_t j, uint32_t n)
 {
     Blend blend = {{0}, {0}, 0};
@@ -102,7 +104,8 @@ static Blend blend_at(const BasisCurves *curves, uint32_t count, uint32_t j, uin
 
 // --- Attributes.
 
-// Messages of text name the line of what is wrong; of binary files the reader stands at the curves.
+// Errors in a text file name the line of the wrong value. In a binary file, the reader already
+// stands at the curves.
 static void stand_at(Reader *reader, uint32_t line)
 {
     if (reader->line) reader->line = line;
@@ -118,7 +121,7 @@ static void fail_count(Reader *reader, const BasisCurves *curves, int array)
 typedef enum Rate { RATE_CONSTANT, RATE_UNIFORM, RATE_VARYING, RATE_VERTEX, RATES } Rate;
 
 typedef struct Counts {
-    uint64_t of[RATES]; // values of each rate
+    uint64_t of[RATES]; // number of values that an array of this rate has
 } Counts;
 
 static Counts count_rates(const BasisCurves *curves)
@@ -133,7 +136,8 @@ static Counts count_rates(const BasisCurves *curves)
     return rates;
 }
 
-// As the file says, if the number of values fits; else as the number shows.
+// The rate that the file declares, if it fits the number of values; otherwise the first rate that
+// fits.
 static Rate find_rate(const BasisCurves *curves, int array, const Counts *counts)
 {
     static const char *const names[RATES] = {"constant", "uniform", "varying", "vertex"};
@@ -148,7 +152,7 @@ static Rate find_rate(const BasisCurves *curves, int array, const Counts *counts
     return RATES;
 }
 
-// The value at a vertex; `cv`, `varying`: numbers of the curve's first ones.
+// The value of an array at a vertex. `start`: indices of the curve's first values, by rate.
 static void value_at(const BasisCurves *curves, int array, Rate rate, uint32_t s,
                      const Blend *blend, const uint64_t start[RATES], float *to)
 {
@@ -173,7 +177,7 @@ static void value_at(const BasisCurves *curves, int array, Rate rate, uint32_t s
     }
 }
 
-// Values for each vertex; NULL if there are none, or after failing.
+// Values for each vertex. NULL if the file has none, or after an error.
 static float *spread(Reader *reader, const BasisCurves *curves, int array, const Strands *strands)
 {
     const UsdValues *values = &curves->array[array];
@@ -201,7 +205,7 @@ static float *spread(Reader *reader, const BasisCurves *curves, int array, const
     return to;
 }
 
-// Values for each strand: of uniform or constant ones. NULL for others.
+// Values for each strand, from uniform or constant ones; NULL for other rates.
 static float *spread_strands(Reader *reader, const BasisCurves *curves, int array,
                              const Strands *strands)
 {
@@ -237,7 +241,7 @@ static void set_colors(Reader *reader, const BasisCurves *curves, Strands *stran
     free(opacity);
 }
 
-// Texture coordinates of strands or vertices.
+// Sets the texture coordinates: of vertices if the file has them, otherwise of strands.
 static void set_texture(Reader *reader, const BasisCurves *curves, Strands *strands)
 {
     Counts counts = count_rates(curves);
@@ -263,7 +267,7 @@ static void set_attributes(Reader *reader, const BasisCurves *curves, Strands *s
     strands->both_ends_fixed = curves->both_ends_fixed != 0;
 }
 
-// --- Indices: values are written once, and named by number.
+// --- Indexed attributes.
 
 static void expand(Reader *reader, BasisCurves *curves, int array)
 {
@@ -309,7 +313,7 @@ static void check_kind(Reader *reader, const BasisCurves *curves)
         reader_fail(reader, "periodic curves: strands have ends");
 }
 
-// Counts the vertices that the curves make, and checks that each curve can be one.
+// Checks the number of points of each curve and returns how many vertices the curves make.
 static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t per_strand)
 {
     const UsdValues *counts = &curves->array[CURVES_COUNTS];
@@ -389,7 +393,7 @@ void basis_curves_place(const BasisCurves *curves, const Strands *strands, doubl
                     size_t at = 3 * (start + blend.from[i]) + (size_t)k;
                     double value = (double)a[at];
                     if (share > 0) value += share * ((double)b[at] - value);
-                    // Adding 0 would turn -0 into 0.
+                    // A sum with a weight of 1 would turn -0 into 0.
                     p[k] = linear ? value : p[k] + blend.weight[i] * value;
                 }
             float *out = to[strands->first[s] + j];

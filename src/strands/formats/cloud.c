@@ -11,8 +11,8 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Marks the places i at which point i + 1 lies far from point i. Returns how many there are.
-// `sorted`: room for count - 1 numbers.
+// Marks each index i for which point i + 1 is far from point i (4 times the median distance) and
+// returns how many there are. `sorted` has room for 2 `count` numbers.
 static uint32_t mark_jumps(const float (*p)[3], uint32_t count, float *sorted, uint8_t *jump)
 {
     const float far = 4;
@@ -33,7 +33,7 @@ static uint32_t mark_jumps(const float (*p)[3], uint32_t count, float *sorted, u
     return jumps;
 }
 
-// Whether strands of `size` points end where points jump.
+// Whether the points jump where strands of `size` points would end; 90 % of both must agree.
 static bool fits(const uint8_t *jump, uint32_t jumps, uint32_t count, uint32_t size)
 {
     uint32_t ends = count / size - 1, hits = 0;

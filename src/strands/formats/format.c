@@ -39,7 +39,7 @@ static bool is_even(const Strands *strands)
     return true;
 }
 
-// `strands`: NULL for any.
+// The format that the name's suffix selects. `strands` must be writable in it, unless NULL.
 static FormatKind find_written(const char *name, const Strands *strands)
 {
     size_t length = strlen(name);
@@ -137,7 +137,7 @@ void format_list_holding(uint32_t features, char *text, size_t size)
     join(words, count, text, size);
 }
 
-// --- For the formats' own files.
+// --- Helpers for the formats' own files.
 
 Result format_source_create(FormatSource *source, Reader *reader, uint32_t strand_count,
                             uint64_t vertex_count)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `.hair`, Cem Yuksel's HAIR files: a header of 128 bytes, then the arrays that its bit field
-// names.
+// `.hair`, Cem Yuksel's HAIR files: a header of 128 bytes, then the arrays that are marked in a bit
+// field of the header.
 #include "strands/formats/format.h"
 
 #include <endian.h>
@@ -11,7 +11,7 @@
 
 enum {
     HAIR_HEADER_BYTES = 128,
-    HAIR_INFO_BYTES = 88, // at the header's end: free text
+    HAIR_INFO_BYTES = 88, // free text at the end of the header
     HAIR_HAS_SEGMENTS = 1,
     HAIR_HAS_POINTS = 2,
     HAIR_HAS_THICKNESS = 4,
@@ -34,7 +34,7 @@ static bool match(const Bytes *bytes)
     return bytes->size >= 4 && memcmp(bytes->data, "HAIR", 4) == 0;
 }
 
-// Fails at the header field at byte `at`.
+// Fails with the byte `at` of the header as the place.
 static void fail_at(Reader *reader, size_t at, const char *what)
 {
     if (!reader_ok(reader)) return;
@@ -65,7 +65,7 @@ static Header read_header(Reader *reader)
     return header;
 }
 
-// Where each array starts; all are whole.
+// Byte offsets of the arrays; `end` is behind the last one. All arrays are within the file.
 typedef struct Layout {
     uint64_t segments, points, thickness, transparency, color, end;
 } Layout;
@@ -94,7 +94,7 @@ static Layout lay_out(Reader *reader, const Header *header)
     return layout;
 }
 
-// Without an array of segments nothing but this bounds the number of strands.
+// Without an array of segments, only the number of points bounds the number of strands.
 static void check_default_segments(Reader *reader, const Header *header)
 {
     if (!reader_ok(reader) || (header->arrays & HAIR_HAS_SEGMENTS)) return;
@@ -151,8 +151,8 @@ static void read_colors(Strands *strands, Reader *reader, const Header *header,
     }
 }
 
-// The format has no place for unit and axis; this program writes them into the header's text. Older
-// ones of its files have its name only, and y up.
+// The format has no field for unit and axis, so this program writes them into the header's text.
+// Files of its older versions contain only its name; their up axis is y.
 static void read_info(FormatSource *source, const char *info)
 {
     float unit = 0;
@@ -163,8 +163,8 @@ static void read_info(FormatSource *source, const char *info)
     source->up = up == 'z' ? UP_Z : UP_Y;
 }
 
-// Where only one of colour and transparency is an array, the header's default stands in for the
-// other; where neither is, and for thickness, defaults are left out.
+// If the file has an array of either colour or transparency, the header's default replaces the
+// other array. If it has neither, the defaults are ignored; so is the default thickness.
 static Result read(FormatSource *source, Reader *reader)
 {
     Header header = read_header(reader);
@@ -202,7 +202,8 @@ static void put_hair_header(FILE *stream, const Strands *strands, bool transpare
                       (strands->vertex_thickness ? HAIR_HAS_THICKNESS : 0u) |
                       (transparent ? HAIR_HAS_TRANSPARENCY : 0u) |
                       (strands->color ? HAIR_HAS_COLOR : 0u);
-    const float defaults[5] = {1.0f, 0.0f, 1.0f, 1.0f, 1.0f}; // thickness, transparency, colour
+    // Defaults of thickness, transparency and colour.
+    const float defaults[5] = {1.0f, 0.0f, 1.0f, 1.0f, 1.0f};
     char info[HAIR_INFO_BYTES] = "";
     snprintf(info, sizeof info, INFO_NAME ": unit %.9g m, %c up",
              strands->unit > 0 ? strands->unit : 1.0, strands->up_z ? 'z' : 'y');
@@ -245,8 +246,8 @@ static Result write(OutFile *file, const Strands *strands, Error *error)
 const Format hair_format = {
     .name = "HAIR",
     .suffix = ".hair",
-    .features = STRANDS_HAS_VERTEX_THICKNESS | STRANDS_HAS_COLOR, // opacity within 2^-25
-    .up_z = true, // straight.hair and the others of cemyuksel.com/research/hairmodels
+    .features = STRANDS_HAS_VERTEX_THICKNESS | STRANDS_HAS_COLOR, // opacity is kept within 2^-25
+    .up_z = true, // as in straight.hair and other files of cemyuksel.com/research/hairmodels
     .match = match,
     .read = read,
     .write = write,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// `.npy` and `.npz`: strands as arrays of numpy, (S, P, 3) for S strands of P points, or a list of
-// points (V, 3), in .npz with the array `sizes` (S,). Names of the other arrays that .npz may have
-// stand in ARRAYS below; docs/formats.md describes them.
+// `.npy` and `.npz`: strands as NumPy arrays. Positions are (S, P, 3) for S strands of P points, or
+// (V, 3), a list of points; in .npz, the array `sizes` (S,) then has the strands' numbers of
+// points. The table ARRAYS below lists the other arrays of .npz; docs/formats.md describes them.
 #include "strands/formats/npz_file.h"
 
 #include "base/npy_array.h"
@@ -15,10 +15,10 @@
 
 // --- Positions.
 
-// What of an array says how many strands of how many points there are; `vertices` 0: not this one.
+// The strands that an array of positions describes; `vertices` is 0 if it is not one.
 typedef struct Layout {
     uint64_t strands, vertices;
-    uint32_t size; // of every strand; 0: not known
+    uint32_t size; // points of every strand; 0 if unknown
 } Layout;
 
 static Layout layout_of(const NpyArray *array)
@@ -42,9 +42,9 @@ static Result refuse_shape(Reader *reader, const NpyArray *array)
                        array->kind == 'f' ? "floats" : "other elements", text);
 }
 
-// The source with these positions. `sizes`: [strands] or NULL for equal ones; where neither it nor
-// the layout knows them, they are found as cloud.h says. `place` is the byte of the first one,
-// `stride` the bytes from one to the next.
+// Creates the source with these positions. `sizes`: [strands], or NULL. If neither `sizes` nor the
+// layout tells where strands end, cloud.h finds it. `place` is the byte offset of the first point
+// and `stride` the distance to the next.
 static Result make_source(FormatSource *source, Reader *reader, const NpyArray *array,
                           Layout layout, const uint32_t *sizes, uint64_t place, uint32_t stride)
 {
@@ -105,11 +105,12 @@ typedef struct Npz {
     bool used[ZIP_MOST_FILES];
 } Npz;
 
-// An array that is unpacked.
+// An unpacked array.
 typedef struct Held {
     NpyArray array;
     uint8_t *owned;
-    uint64_t place; // of its elements in the archive; of the packed bytes if they are packed
+    // Byte offset in the archive: of the elements, or of the packed bytes if the array is packed.
+    uint64_t place;
     bool packed;
 } Held;
 
@@ -133,7 +134,8 @@ static void drop(Npz *npz, Held *held)
     *held = (Held){0};
 }
 
-// Fails the archive's reader where the array is not good. To be dropped in any case.
+// Reads an array of the archive; fails the archive's reader if the array is invalid. The caller
+// must drop `held` in either case.
 static Result hold(Npz *npz, uint32_t file, Held *held)
 {
     Reader *reader = npz->reader;
@@ -163,8 +165,8 @@ static void refuse_companion(Npz *npz, const char *name, const NpyArray *array, 
                 name, text, (unsigned long long)count, (unsigned long long)width);
 }
 
-// `count` times `width` numbers as float32, to be freed; NULL if there is no such array, or after
-// failing. Arrays of vertices may have the axes of strands and points.
+// `count` times `width` numbers as float32, which the caller frees. NULL if there is no such array,
+// or after an error. An array of vertices may have separate axes for strands and points.
 static float *copy_named(Npz *npz, const char *name, uint64_t count, uint64_t width)
 {
     int file = find_name(npz, name);
@@ -185,7 +187,7 @@ static float *copy_named(Npz *npz, const char *name, uint64_t count, uint64_t wi
     return numbers;
 }
 
-// A single number; `value` stays if there is no such array.
+// Reads a single number. `value` keeps its default if there is no such array.
 static void read_scalar(Npz *npz, const char *name, double least, double *value)
 {
     int file = find_name(npz, name);
@@ -222,7 +224,8 @@ static void read_up(Npz *npz)
 
 // --- .npz: strands.
 
-// By name, or the first that can be positions; -1 after failing.
+// The array that --array names, or else `positions` or `points`, or else the first array with a
+// suitable shape. Returns its number, or -1 after an error.
 static int find_positions(Npz *npz, Held *held)
 {
     static const char *const names[] = {"positions", "points"};
@@ -250,7 +253,7 @@ static int find_positions(Npz *npz, Held *held)
     return -1;
 }
 
-// [strands] whole numbers that add up to the vertices; NULL after failing.
+// [strands] whole numbers that add up to the number of vertices; NULL after an error.
 static uint32_t *read_sizes(Npz *npz, Layout *layout)
 {
     int file = find_name(npz, "sizes");
@@ -298,7 +301,8 @@ static void read_strands(Npz *npz)
     drop(npz, &held);
 }
 
-// The arrays besides positions: name, member of Strands, numbers of each, of what, and its feature.
+// The arrays besides positions: name, member of Strands, numbers per record, member with the number
+// of records, feature.
 #define ARRAYS(X)                                                                                  \
     X(uv, strand_uv, 2, strand_count, STRANDS_HAS_STRAND_UV)                                       \
     X(vertex_uv, vertex_uv, 2, vertex_count, STRANDS_HAS_VERTEX_UV)                                \
@@ -337,7 +341,8 @@ static void read_companions(Npz *npz)
     strands->both_ends_fixed = fixed != 0;
 }
 
-// (F, S, P, 3) or (F, V, 3): kept if they are wanted, else counted.
+// Frames are (F, S, P, 3) or (F, V, 3). Reads them if the caller wants all frames; otherwise only
+// counts them.
 static void read_frames(Npz *npz)
 {
     FormatSource *source = npz->source;
@@ -389,7 +394,7 @@ static Result read_npz(FormatSource *source, Reader *reader)
     return reader->result;
 }
 
-// A zip archive whose first file is an array.
+// Detects a zip archive whose first file is a NumPy array.
 static bool match_npz(const Bytes *bytes)
 {
     const uint8_t *at = bytes->data;
@@ -402,7 +407,7 @@ static bool match_npz(const Bytes *bytes)
 
 static const bool HOST_IS_BIG = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-// `type` without its byte order: "f4".
+// `type` has no byte order: "f4".
 static void add(ZipWriter *writer, const char *name, const char *type, const uint64_t *shape,
                 uint32_t axes, const void *data, size_t size)
 {
@@ -418,7 +423,7 @@ static void add_scalar(ZipWriter *writer, const char *name, double value)
     add(writer, name, "f8", NULL, 0, &value, sizeof value);
 }
 
-// The vertices of every strand; 0 if they differ.
+// The number of vertices of every strand; 0 if it is not the same for all.
 static uint32_t even_size(const Strands *strands)
 {
     uint32_t size = strands_size(strands, 0);
@@ -481,7 +486,7 @@ Result npz_write_frames(OutFile *file, const Strands *strands, const NpzFrames *
                         Error *error)
 {
     ZipWriter writer = {.out = file};
-    Strands first = *strands; // as they are in the first frame
+    Strands first = *strands; // positions are those of the first frame
     if (frames->count) first.position = (float(*)[3])(uintptr_t)frames->position;
     add_positions(&writer, &first);
     add_companions(&writer, strands);

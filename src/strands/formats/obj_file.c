@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Wavefront OBJ with lines: `v` vertices and `l` elements, each a strand from root to tip.
+// Wavefront OBJ with lines: `v` statements are vertices, each `l` statement is a strand from root
+// to tip.
 #include "strands/formats/format.h"
 
 #include "mesh/obj.h"
@@ -7,17 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- Reading: once to count, once to keep.
+// --- Reading: the first pass counts, the second one stores.
 
 typedef struct Obj {
     Reader *reader;
     FormatSource *source;
     float (*position)[3];              // [vertices]
-    uint32_t *line;                    // [vertices] where it stands
+    uint32_t *line;                    // [vertices] line in the file
     uint64_t vertices, lines, corners; // in the file
-    uint32_t read;                     // vertices so far
-    uint32_t strands, used;            // so far; `used`: corners
-    int64_t last;                      // vertex at which the last line ended, -1: none
+    uint32_t read;                     // vertices read so far
+    uint32_t strands, used;            // so far; `used` counts corners
+    int64_t last;                      // vertex where the last `l` ended; -1 if none
 } Obj;
 
 static void count_statements(Obj *obj)
@@ -45,7 +46,7 @@ static void read_vertex(Obj *obj)
     obj->read++;
 }
 
-// The vertex that a corner means, from 0.
+// The index (from 0) of the vertex that a corner refers to.
 static uint32_t read_corner(Obj *obj)
 {
     Reader *reader = obj->reader, before = *reader;
@@ -111,10 +112,10 @@ static Result make_room(Obj *obj)
     return good ? RESULT_OK : reader_fail_memory(reader);
 }
 
-// Reads `v` and `l` statements and ignores all others. Indices are from 1 or negative from the
-// last vertex; corners may be v or v/t. An `l` that begins at the vertex at which the one before it
-// ended goes on with that strand, as programs that write each edge for itself have it. Vertices
-// that no line uses are ignored.
+// Reads `v` and `l` statements and ignores all others. Indices count from 1, or from the last
+// vertex if negative; corners are v or v/t. Some programs write each edge as an `l` statement of
+// its own, so an `l` that begins at the vertex where the previous one ended continues its strand.
+// Vertices that no `l` uses are ignored.
 static Result read(FormatSource *source, Reader *reader)
 {
     Obj obj = {.reader = reader, .source = source, .last = -1};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// `.ply` with strands: hairutil's form, in which an element `strand` has the number of each
-// strand's segments (nsegs); points that edges join; and bare lists of points (cloud.h). After
-// the files of hapPLY and hairutil. Colours of
-// integers are sRGB, of floats linear. Elements and properties of other names are stepped over.
+// `.ply` with strands, in one of three forms: hairutil's, in which an element `strand` has the
+// number of each strand's segments (nsegs); points that edges join; and bare lists of points
+// (cloud.h). Follows the files of hapPLY and hairutil. Integer colours are sRGB, float colours
+// linear. Elements and properties with other names are skipped.
 #include "base/ply.h"
 #include "image/image.h"
 #include "strands/formats/cloud.h"
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What a property is for.
+// The meaning of a property.
 typedef enum PlyRole {
     PLY_X,
     PLY_Y,
@@ -36,14 +36,14 @@ typedef struct Ply {
     PlyFile file;
     Reader *reader;
     FormatSource *source;
-    const PlyElement *vertices, *strands, *edges; // NULL: none
+    const PlyElement *vertices, *strands, *edges; // NULL if absent
     float (*position)[3];
     float (*color)[4];
     float *thickness;
-    uint64_t *place; // [vertices] byte
+    uint64_t *place; // [vertices] byte offset in the file
     uint32_t *line;  // [vertices]
     uint32_t *sizes; // [strands]
-    uint8_t *joined; // [vertices] to the next one
+    uint8_t *joined; // [vertices] whether an edge leads to the next vertex
 } Ply;
 
 // --- Elements.
@@ -161,7 +161,7 @@ static void read_elements(Ply *ply)
     }
 }
 
-// Meshes are refused before their bytes are read.
+// Refuses meshes before it reads their data.
 static void refuse_mesh(Ply *ply)
 {
     for (uint32_t i = 0; i < ply->file.element_count && reader_ok(ply->reader); i++) {
@@ -175,7 +175,7 @@ static void refuse_mesh(Ply *ply)
 
 // --- Strands.
 
-// Those that edges make: vertices that are joined to the next one.
+// Counts the strands that edges make; a strand ends at a vertex that is not joined to the next one.
 static uint32_t count_joined(Ply *ply)
 {
     uint32_t strands = 0;
@@ -274,7 +274,7 @@ static Result read(FormatSource *source, Reader *reader)
     return reader->result;
 }
 
-// The first line is "ply"; the second one says which of the two rows.
+// The first line is "ply"; the second one says whether the data is text or binary.
 static bool match_kind(const Bytes *bytes, bool text)
 {
     if (!ply_matches(bytes)) return false;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// `.data` (USC-HairSalon) and `.bin` (CT2Hair): a count of strands, then each strand's count of
-// vertices with the vertices behind it, 3 or 7 floats each. Nothing but their counts marks these
-// files, so a file is one of them if its strands end where the file does.
+// `.data` (USC-HairSalon) and `.bin` (CT2Hair): the number of strands, then each strand's number of
+// vertices followed by the vertices, 3 or 7 floats each. The files have no signature, so a file is
+// recognised by its strands ending exactly at the end of the file.
 #include "strands/formats/format.h"
 
 enum { DATA_FLOATS = 3, BIN_FLOATS = 7 };
 
-// Steps over all strands; returns the vertices in all, or 0 where the file ends before them or
-// goes on behind them.
+// Steps over all strands and returns the total number of vertices; 0 if the strands do not end
+// exactly at the end of the file.
 static uint64_t count_vertices(const Bytes *bytes, int floats)
 {
     Reader reader = reader_begin_binary("", bytes, NULL);
@@ -33,7 +33,7 @@ static bool match_bin(const Bytes *bytes)
     return count_vertices(bytes, BIN_FLOATS) > 0;
 }
 
-// Only the first 3 floats of a vertex are used.
+// Reads the first 3 floats of each vertex and ignores the rest.
 static Result read_floats(FormatSource *source, Reader *reader, int floats)
 {
     Bytes bytes = {(uint8_t *)(uintptr_t)reader->data, reader->size};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TressFX 3 and 4 binary, after AMD's TressFXFileFormat.h: a header with offsets, then arrays of
-// float32.
+// TressFX 3 and 4 binary, following AMD's TressFXFileFormat.h: a header with offsets, then arrays
+// of float32.
 #include "strands/formats/format.h"
 
 #include <stdlib.h>
@@ -27,16 +27,16 @@ static bool match4(const Bytes *bytes)
     return has_version(bytes, 4, 5);
 }
 
-// An array that the header speaks of.
+// An array that the header refers to.
 typedef struct Array {
-    uint32_t start;  // byte; 0: absent
-    size_t field_at; // where the header says so
+    uint32_t start;  // byte offset; 0 if absent
+    size_t field_at; // byte offset of `start` in the header
 } Array;
 
 typedef struct Header {
     uint32_t strands, size; // size: vertices per strand
-    size_t bytes;           // of the header itself
-    uint64_t end;           // of the last array
+    size_t bytes;           // size of the header
+    uint64_t end;           // end of the last array
 } Header;
 
 static void read_counts(Reader *reader, Header *header)
@@ -60,7 +60,8 @@ static Array read_offset(Reader *reader)
     return array;
 }
 
-// Checks that `count` records of `stride` bytes are there; true if the array is present and whole.
+// Checks that `count` records of `stride` bytes are within the file; true if the array is present
+// and complete.
 static bool check_array(Reader *reader, Header *header, Array array, uint64_t count,
                         uint64_t stride, const char *what)
 {
@@ -77,8 +78,8 @@ static bool check_array(Reader *reader, Header *header, Array array, uint64_t co
     return true;
 }
 
-// Positions are the one array that must be there, and checking them bounds both counts by the
-// file's size. Their floats are left to the caller.
+// Positions are the only required array. Checking them against the file's size bounds both counts.
+// The caller reads the floats.
 static Result begin_arrays(FormatSource *source, Reader *reader, Header *header, Array positions,
                            uint32_t stride)
 {
@@ -97,7 +98,7 @@ static Result begin_arrays(FormatSource *source, Reader *reader, Header *header,
     return RESULT_OK;
 }
 
-// An optional array of `width` floats a record.
+// Reads an optional array of `width` floats per record.
 static void read_array(Reader *reader, Header *header, Array array, uint64_t count, size_t width,
                        const char *what, void *to)
 {
@@ -121,14 +122,14 @@ static Result skip_to_offsets(Reader *reader, const Header *header, size_t offse
     return reader->result;
 }
 
-// Arrays that the header gives no offset are left NULL.
+// Arrays without an offset in the header stay NULL.
 static Result read3(FormatSource *source, Reader *reader)
 {
     Header header = {.bytes = TFX3_HEADER_BYTES};
     float version = reader_read_f32(reader, "the version");
     read_counts(reader, &header);
     uint32_t followers = reader_read_u32(reader, "the number of followers");
-    // A C++ bool with three bytes of padding that nobody promised to be zero.
+    // A C++ bool: its three bytes of padding may have any value.
     bool ends_fixed = (reader_read_u32(reader, "bothEndsImmovable") & 0xff) != 0;
     if (skip_to_offsets(reader, &header, 144) != RESULT_OK) return reader->result;
     Array positions = read_offset(reader), thickness = read_offset(reader);
@@ -145,14 +146,14 @@ static Result read3(FormatSource *source, Reader *reader)
                &strands->strand_thickness);
     read_array(reader, &header, strand_uv, header.strands, 2, "strand UVs", &strands->strand_uv);
     read_array(reader, &header, color, count, 4, "colours", &strands->color);
-    // Which strands are guides: all of these are, so the indices only have to be whole.
+    // Guide indices: every strand is used as a guide, so the array is only checked to be complete.
     check_array(reader, &header, guides, header.strands, 4, "guide indices");
     read_array(reader, &header, vertex_uv, count, 2, "vertex UVs", &strands->vertex_uv);
     note_unread(source, reader, &header);
     return reader->result;
 }
 
-// float4 positions: x, y, z, and in w whether the vertex may move.
+// Positions are float4: x, y, z, and in w whether the vertex may move.
 static Result copy_positions4(Strands *strands, Reader *reader, uint64_t start)
 {
     strands->mobility = malloc(((size_t)strands->vertex_count + 1) * sizeof *strands->mobility);
@@ -196,7 +197,7 @@ static void put_zeros(FILE *stream, size_t bytes)
     while (bytes--) fputc(0, stream);
 }
 
-// The common number of vertices, or 0 with an error.
+// The number of vertices that all strands have, or 0 and an error.
 static uint32_t find_common_size(const Strands *strands, const char *path, Error *error)
 {
     uint32_t size = strands->strand_count ? strands_size(strands, 0) : 0;
@@ -211,7 +212,8 @@ static uint32_t find_common_size(const Strands *strands, const char *path, Error
     return size;
 }
 
-// Steps `end` over an array of `count` times `floats` and returns where it starts; 0 if absent.
+// Advances `end` past an array of `count` times `floats` floats and returns where it starts; 0 if
+// absent.
 static uint32_t place_array(uint64_t *end, const void *array, uint64_t count, uint32_t floats)
 {
     if (!array) return 0;
@@ -253,7 +255,7 @@ static Result write3(OutFile *file, const Strands *strands, Error *error)
     format_put_u32(stream, thickness);
     format_put_u32(stream, strand_uv);
     format_put_u32(stream, color);
-    format_put_u32(stream, 0); // guide indices: all are guides
+    format_put_u32(stream, 0); // no guide indices: all strands are guides
     format_put_u32(stream, vertex_uv);
     put_zeros(stream, 32 * 4);
     format_put_floats(stream, strands->position[0], 3 * count);
@@ -315,8 +317,8 @@ const Format tfx3_format = {
     .write = write3,
 };
 
-// Where strands have no mobility, 0 is written for the root (and the tip if both ends are fixed)
-// and 1 for the rest: so fixed ends are held, too.
+// For strands without mobility, the format's w is 0 at the root (and at the tip if both ends are
+// fixed) and 1 elsewhere, so fixed ends survive a round trip.
 const Format tfx4_format = {
     .name = "TressFX 4 binary",
     .suffix = ".tfx",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TressFX 2 text: `numStrands`, `is sorted`, then each strand's vertices, with or without a block
-// of parameters in front.
+// TressFX 2 text: `numStrands`, `is sorted`, then each strand's vertices. A block of parameters may
+// come first.
 #include "strands/formats/format.h"
 
 #include "base/decimal.h"
@@ -11,7 +11,7 @@
 
 // --- Reading.
 
-// The shortest legal forms: "strand 0 numVerts 0" with its newline, and "0 0 0" likewise.
+// Sizes of the shortest legal forms, to bound counts: "strand 0 numVerts 0\n" and "0 0 0\n".
 enum { BYTES_PER_STRAND = 20, BYTES_PER_VERTEX = 6 };
 
 typedef struct Head {
@@ -83,7 +83,7 @@ static void read_strand_count(Reader *reader, Head *head)
                     (unsigned long long)room);
 }
 
-// One parameter; several may stand on one line.
+// Reads one parameter; a line may have several.
 static void read_parameter(Reader *reader, Head *head)
 {
     if (reader_take(reader, "version")) {
@@ -121,7 +121,7 @@ static Head read_head(Reader *reader)
             reader_fail_expected(reader, head.counted ? "'is sorted'" : "'numStrands'");
             break;
         }
-        // A bare word is easier to see than a list of all parameters.
+        // If a strand comes too early, name the missing word instead of listing all parameters.
         Reader before = *reader;
         if (reader_take(reader, "strand")) {
             *reader = before;
@@ -151,8 +151,8 @@ static void keep_head(FormatSource *source, const Head *head)
         source->rotation[axis] *= turn / 360.0;
 }
 
-// "strand 3 numVerts 16 texcoord 0.5 0.25"; the number is a name and the texture coordinate may be
-// missing.
+// "strand 3 numVerts 16 texcoord 0.5 0.25". The number is only a name, and the texture coordinate
+// is optional.
 static uint32_t read_strand_head(Reader *reader, FormatSource *source, uint32_t s)
 {
     source->place[s] = reader->line;
@@ -201,13 +201,13 @@ static void read_strands(Reader *reader, FormatSource *source, const Head *head)
         reader_fail_expected(reader, "the end of the file behind the last strand");
 }
 
-// Numbers of a rotation are radians, as AMD's loader takes them, unless one is beyond a full turn
-// (2 pi): then all three are degrees.
+// A rotation is in radians, as in AMD's loader, unless one of its numbers exceeds a full turn (2
+// pi): then all three are in degrees.
 static Result read(FormatSource *source, Reader *reader)
 {
     Head head = read_head(reader);
     if (!reader_ok(reader)) return reader->result;
-    // Vertices are not counted beforehand: room for as many as the file could hold.
+    // The number of vertices is not known yet, so make room for as many as the file could hold.
     uint64_t room = ((uint64_t)reader_left(reader) + 1) / BYTES_PER_VERTEX;
     if (format_source_create(source, reader, head.strands, room) != RESULT_OK)
         return reader->result;
@@ -220,7 +220,7 @@ static Result read(FormatSource *source, Reader *reader)
     return reader->result;
 }
 
-// --- Writing: the shortest decimals that read back.
+// --- Writing, with the shortest decimals that read back as the same number.
 
 static void put_parameters(FILE *stream, const Strands *strands)
 {

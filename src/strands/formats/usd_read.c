@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads `.usda`: all BasisCurves prims that are drawn, in the order of the file, with the
-// transforms of their parents and, if they are wanted, all times. Prims that are hidden are left
-// out and counted.
+// Reads `.usda`: all visible BasisCurves prims, in the order of the file, with the transforms of
+// their parents and, if the caller wants them, all times. Hidden prims are left out and counted.
 #include "base/usd_stage.h"
 #include "strands/formats/basis_curves.h"
 #include "strands/formats/format.h"
@@ -21,7 +20,7 @@ typedef struct Usd {
     Reader *reader;
     UsdStage stage;
     FormatWishes wishes;
-    BasisCurves *curves; // [curves_count] with points
+    BasisCurves *curves; // [curves_count] only curves that have points
     uint32_t curves_count, left_out, other_curves, meshes;
 } Usd;
 
@@ -41,7 +40,7 @@ static void *begin_curves(void *to, const char *type, int prim)
     return curves;
 }
 
-// The first of the samples of what does not move.
+// Reads the first sample of an attribute that is not animated.
 static void read_first(Reader *reader, UsdValues *only)
 {
     UsdSamples samples = {0};
@@ -102,7 +101,7 @@ static void add_curves(Usd *usd, BasisCurves *curves)
 {
     Reader *reader = usd->reader;
     if (!reader_ok(reader) || curves->points.count == 0 || curves->points.sample[0].count == 0)
-        return; // an `over`, or empty
+        return; // an `over`, or no curves
     if (usd_stage_hides(&usd->stage, curves->prim)) {
         ++usd->left_out;
         return;
@@ -130,8 +129,8 @@ static const UsdSchema CURVES = {begin_curves, read_attribute, find_number, end_
 
 // --- Times.
 
-// Without all_frames only the first of the curves' samples are there, but all of the transforms'.
-// Returns how many times the file has.
+// Without all_frames only the first sample of the points was read, but all samples of the
+// transforms. Returns the number of times in the file.
 static uint32_t find_times(const Usd *usd, FormatSource *source, UsdTimes *times)
 {
     for (uint32_t i = 0; i < usd->curves_count; ++i)
@@ -151,7 +150,7 @@ static uint32_t find_times(const Usd *usd, FormatSource *source, UsdTimes *times
 
 // --- Strands.
 
-// All curves at a time, one behind the other.
+// Writes the positions of all curves at a time, one set after the other.
 static void place_all(const Usd *usd, const Strands *sets, double time, float (*to)[3])
 {
     for (uint32_t i = 0; i < usd->curves_count && reader_ok(usd->reader); ++i) {

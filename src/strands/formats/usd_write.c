@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- Arrays: values of `width` floats in brackets, all on one line as in Pixar's own files (and as
-// some readers need it within time samples).
+// --- Arrays: values of `width` floats in brackets. An array takes one line, as in Pixar's own
+// files, because some readers need that in time samples.
 
 static void put_value(FILE *stream, const float *value, int width)
 {
@@ -17,7 +17,7 @@ static void put_value(FILE *stream, const float *value, int width)
     if (width > 1) fputc(')', stream);
 }
 
-// Values `stride` floats apart.
+// Writes values that lie `stride` floats apart.
 static void put_list(FILE *stream, const float *values, size_t count, int width, size_t stride)
 {
     fputc('[', stream);
@@ -28,7 +28,7 @@ static void put_list(FILE *stream, const float *values, size_t count, int width,
     fputc(']', stream);
 }
 
-// An attribute with its interpolation; nothing for NULL.
+// Writes an attribute with its interpolation; nothing if `values` is NULL.
 static void put_primvar(UsdWriter *writer, const char *type_and_name, const float *values,
                         CurvesRate rate, int width, size_t stride)
 {
@@ -40,7 +40,7 @@ static void put_primvar(UsdWriter *writer, const char *type_and_name, const floa
     fprintf(stream, " (\n        interpolation = \"%s\"\n    )\n", names[rate]);
 }
 
-// --- What does not move.
+// --- Attributes that are not animated.
 
 static void put_layer(FILE *stream, const CurvesOptions *options)
 {
@@ -55,7 +55,7 @@ static void put_layer(FILE *stream, const CurvesOptions *options)
     fprintf(stream, "\n    upAxis = \"%c\"\n)\n\n", options->up_z ? 'Z' : 'Y');
 }
 
-// What has no attribute of its own in the schema.
+// Attributes that the schema does not define.
 static void put_wishes(FILE *stream, const Strands *strands)
 {
     if (!strands->followers && strands->follower_radius == 0.0f && !strands->both_ends_fixed)
@@ -114,7 +114,7 @@ static void put_attributes(UsdWriter *writer)
         put_groups(writer->file.stream, strands->strand_group, strands->strand_count);
 }
 
-// Writes all that does not move to the file, which goes over to the writer.
+// Writes everything that is not animated. The writer takes ownership of the file.
 static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands,
                   const CurvesOptions *options)
 {
@@ -144,7 +144,7 @@ Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *stran
 
 // --- Frames.
 
-// The box of all points, wider by half a strand's width, as the schema wants it.
+// The bounding box of all points, grown by half a strand's width, as the schema requires.
 static void find_extent(const UsdWriter *writer, const float (*positions)[3], float box[6])
 {
     for (int axis = 0; axis < 3; ++axis) {
@@ -231,7 +231,7 @@ Result usd_write_strands(OutFile *file, const Strands *strands, Error *error)
     begin(&writer, file, strands, &(CurvesOptions){.metres_per_unit = 1});
     Result result = usd_writer_add(&writer, 0, (const float(*)[3])strands->position, error);
     if (result == RESULT_OK) put_extents(&writer);
-    writer.file = (OutFile){0}; // the caller's
+    writer.file = (OutFile){0}; // the caller still owns the file
     usd_writer_discard(&writer);
     return result;
 }
