@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Without links and dots. Of a file that does not exist the folder is resolved; NULL if that is not
-// there either.
+// The absolute path without links and dots. If the file does not exist, only its folder is
+// resolved; NULL if the folder does not exist, either. Owned by the caller.
 static char *resolve(const char *path)
 {
     char *whole = realpath(path, NULL), *name = NULL;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The forms: https://docs.github.com/en/actions/reference/workflow-commands-for-github-actions
+// Workflow commands:
+// https://docs.github.com/en/actions/reference/workflow-commands-for-github-actions
 #include "compare/github.h"
 
 #include "base/outfile.h"
@@ -13,7 +14,8 @@ enum { MOST_ERRORS = 10, MOST_ROWS = 1000 };
 
 // --- Annotations.
 
-// A command is one line. In a property ':' and ',' have a meaning, too.
+// Escapes text for a workflow command, which must be one line. In a property, ':' and ',' are
+// escaped, too.
 static void put_data(FILE *stream, const char *text, bool is_property)
 {
     for (; *text; ++text) {
@@ -62,7 +64,7 @@ void github_print_annotations(const PairList *list, const Verdict *verdicts, FIL
 
 // --- The summary.
 
-// As code in a cell of a table.
+// Writes text as code that can stand in a cell of a Markdown table.
 static void put_code(FILE *stream, const char *text)
 {
     fputc('`', stream);

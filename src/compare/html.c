@@ -14,18 +14,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Twice the size on the page, for dense screens.
+// The page shows thumbnails at half of this size, for dense screens.
 enum { THUMBNAIL_WIDTH = 144, THUMBNAIL_HEIGHT = 108 };
 
-// Pairs that differ stand as PNG, the worst first, up to so many bytes in all; the others as JPEG.
+// Images of differing pairs are embedded as PNG, the worst pairs first, until they take this many
+// bytes. The remaining pairs are embedded as JPEG.
 enum { EXACT_BYTES = 8 << 20 };
 
-// A pair that stands on the page in two ways until all are known.
+// A pair whose images were added to the page twice, as PNG and as JPEG. Once all pairs are known,
+// choose_forms keeps one of the two.
 struct HtmlChoice {
-    json_t *sides[2]; // of the pair; taken with references
+    json_t *sides[2]; // the JSON objects of A and B; holds a reference to each
     int exact[2], small[2];
     bool has[2];
-    size_t bytes; // of the exact ones
+    size_t bytes; // of the PNG files
     double badness;
     size_t number; // in the order of the list
 };
@@ -37,7 +39,8 @@ static void set_text(json_t *object, const char *key, const char *text)
     json_object_set_new(object, key, report_text(text));
 }
 
-// The PNG that stands on the page: the file itself if browsers show it as it is.
+// Chooses the PNG to embed: the file itself if browsers show it as it is, otherwise a converted
+// copy.
 static Result choose_png(HtmlSide *side, const Image *image, Bytes *file, Error *error)
 {
     if (image->kind == IMAGE_8 && picture_is_plain(file)) {
@@ -52,7 +55,8 @@ static Result choose_png(HtmlSide *side, const Image *image, Bytes *file, Error 
     return result;
 }
 
-// [key, text] for each text of a PNG or EXR file, such as the device that drew it; PFM has none.
+// [key, text] for each text of a PNG or EXR file, such as the name of the device. PFM files have no
+// texts.
 static json_t *list_texts(const Bytes *file, const char *path)
 {
     ImageTexts texts;
@@ -70,7 +74,7 @@ static json_t *list_texts(const Bytes *file, const char *path)
     return list;
 }
 
-// The same for looking at, if that is smaller.
+// Makes a JPEG of the image for viewing and keeps it if it is smaller than the PNG.
 static Result make_small(HtmlSide *side, const Image *image, Error *error)
 {
     Image picture;
@@ -104,7 +108,7 @@ static void read_side(HtmlSide *side, Image *image, const char *path)
     bytes_destroy(&file);
 }
 
-// Without memory there is none: the page has a mark in its place.
+// If memory is short, the pair has no thumbnail and the page shows a placeholder.
 static void make_thumbnail(HtmlPair *page, const Image *image)
 {
     Image picture = {0}, small = {0};
@@ -133,7 +137,7 @@ void html_pair_read(HtmlPair *page, const Pair *pair)
         if (image[i].pixels) make_thumbnail(page, &image[i]);
     for (int i = 0; i < 2; ++i) {
         if (image[i].pixels && (i == 1 || !page->equal))
-            make_small(&page->side[i], &image[i], NULL); // without it the PNG stands there
+            make_small(&page->side[i], &image[i], NULL); // if this fails, the page has only the PNG
         image_destroy(&image[i]);
     }
 }
@@ -160,8 +164,8 @@ Result html_open(Html *html, const char *path, Error *error)
     return RESULT_OK;
 }
 
-// What makes B the reference; for an image without a B, what removes the reference. NULL: nothing
-// does, as there is no B that can be read, or memory is short.
+// The command that accepts the pair: it makes B the reference or, if there is no B, removes the
+// reference. NULL if no command would help, because B cannot be read, and if memory is short.
 static char *accepting_command(const Pair *pair, const Verdict *verdict, const HtmlPair *page)
 {
     const char *const update[] = {"tractrix-compare", "--update", "--", pair->a, pair->b, NULL};
@@ -194,7 +198,8 @@ static Result add_side(Html *html, json_t *side, const HtmlSide *image, struct H
     return report_add_image(&html->report, &image->small, &choice->small[i], error);
 }
 
-// Images of a pair that differs: which of the two forms stays is chosen at the end.
+// Adds the images of a differing pair in both forms; choose_forms drops one of the two when the
+// page is closed.
 static Result add_sides(Html *html, json_t *sides[2], const HtmlPair *page, const Verdict *verdict,
                         Error *error)
 {
@@ -216,7 +221,7 @@ static int order(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-// The worst pairs stay exact, as many as there is room for.
+// Keeps the PNG for the worst pairs, as many as fit into EXACT_BYTES.
 static void choose_forms(Html *html)
 {
     size_t bytes = 0;
@@ -267,7 +272,7 @@ Result html_add(Html *html, const Pair *pair, const Verdict *verdict, const Html
     return result;
 }
 
-// What the heat map's colours mean: from 0 to 1 in even steps.
+// The colours of the heat map from 0 to 1 in even steps, for the page's legend.
 static json_t *list_colors(void)
 {
     json_t *list = json_array();

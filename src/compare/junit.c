@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The form: https://github.com/testmoapp/junitxml. Attachments: GitLab takes the first of a failed
-// case, relative to the project's folder (its documentation, "Unit test reports"); Jenkins takes
-// all (plugin JUnit Attachments).
+// JUnit XML: https://github.com/testmoapp/junitxml. Of the attachments of a failed case, GitLab
+// takes only the first; the path is relative to the project's folder (its documentation, "Unit test
+// reports"). Jenkins takes all of them (plugin JUnit Attachments).
 #include "compare/junit.h"
 
 #include "base/json.h"
@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Escaped for text and attributes. XML has no place for most control characters, and bytes that are
-// no UTF-8 would spoil the whole file.
+// Escapes text for XML content and attributes. XML 1.0 cannot contain most control characters, and
+// bytes that are not UTF-8 would make the whole file invalid.
 static void put_xml(FILE *stream, const char *text)
 {
     json_t *utf8 = json_string(text);
@@ -49,7 +49,7 @@ static void put_path(FILE *stream, const char *before, const char *path, const c
     free(name);
 }
 
-// GitLab shows the first one, which should tell most.
+// Attaches the most informative image first, because GitLab shows only the first attachment.
 static void put_attachments(FILE *stream, const Pair *pair, const Verdict *verdict)
 {
     const char *const paths[] = {verdict->sheet, verdict->heat_map, pair->has_b ? pair->b : NULL,

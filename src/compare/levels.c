@@ -5,7 +5,7 @@
 
 const char *const LEVEL_NAMES[LEVELS] = {"", "platform", "class", "common"};
 
-// How a platform's name begins (gpu/platform.h), and what it is.
+// The beginning of a platform's name (gpu/platform.h), and the class of the platform.
 static const char *const CLASSES[][2] = {
     {"llvmpipe", "cpu"},  {"softpipe", "cpu"}, {"swrast", "cpu"}, {"swiftshader", "cpu"},
     {"lavapipe", "cpu"},  {"swr", "cpu"},      {"amd", "amd"},    {"intel", "intel"},

@@ -31,7 +31,7 @@ typedef struct Command {
     const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered, *html;
     const char *commands, *only, *platform, *class_limits, *common_limits;
     bool github, only_failures, update, any_platform, quiet;
-    int jobs, shrink, level; // of --update; LEVEL_NONE: that of the golden in use
+    int jobs, shrink, level; // level: of --update; LEVEL_NONE: the level of the golden in use
     const char *a, *b;
     CompareLimits limits[LEVELS];
     char *line; // the command line before the parser changes its order; owned
@@ -170,7 +170,8 @@ static Result read_level_limits(CompareLimits *limits, const char *name, const c
     return read_failing(limits, name, end + 1, error);
 }
 
-// Limits that are named count; if none is, only equal images pass, or what a level allows.
+// Limits given as options apply. Without any, images must be equal, or within the limits of the
+// golden's level.
 static Result read_limits(Command *command, Error *error)
 {
     CompareLimits limits = compare_limits_default();
@@ -195,7 +196,8 @@ static Result read_limits(Command *command, Error *error)
                              command->common_limits, error);
 }
 
-// What belongs to goldens by platform, and a level that can be written.
+// Checks the options for goldens by platform: they need --platform, and --level must be a level
+// that this platform uses.
 static Result check_platform(const Command *command, Error *error)
 {
     const char *alone = command->any_platform    ? "--any-platform"
@@ -220,7 +222,7 @@ static Result check_platform(const Command *command, Error *error)
     return RESULT_OK;
 }
 
-// How many reports and images go to standard output.
+// How many reports and images are written to standard output.
 static int count_to_stdout(const Command *command)
 {
     const char *const paths[] = {command->json, command->junit, command->html, command->heat_map,
@@ -231,7 +233,7 @@ static int count_to_stdout(const Command *command)
     return count;
 }
 
-// Where the lines go: a report on standard output has it for itself.
+// The stream for verdicts. They go to stderr if a report is written to standard output.
 static FILE *lines(const Command *command)
 {
     return count_to_stdout(command) ? stderr : stdout;
@@ -247,8 +249,8 @@ static Result check_reports(const Command *command, Error *error)
                      count_to_stdout(command));
 }
 
-// What is written is neither compared nor written twice: reports beside every image that is read.
-// --update may write A. A folder or pattern takes a drawing for each of its pairs.
+// Checks that no output overwrites an input or another output. With --update, A may be overwritten.
+// If there are several pairs, --heatmap and --sheet name folders.
 static Result claim_paths(const Command *command, const PairList *list, Error *error)
 {
     PathRole drawings = list->many ? PATH_FOLDER : PATH_WRITTEN;
@@ -284,7 +286,7 @@ static Result claim_paths(const Command *command, const PairList *list, Error *e
     return result;
 }
 
-// --shrink compares nothing, and has no use for what belongs to a comparison.
+// --shrink compares nothing, so it refuses all options of a comparison.
 static Result check_shrink(const Command *command, const Command *before, Error *error)
 {
     static const size_t sizes[] = {[OPTION_SWITCH] = sizeof(bool),
@@ -330,25 +332,26 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     return read_limits(command, error);
 }
 
-// --- The work: threads take pairs in order, the main one prints verdicts in order.
+// --- The work: threads take pairs in order; the main thread prints verdicts in order.
 
 typedef struct Work {
     const Command *command;
     const PairList *list;
     Verdict *verdicts;
-    HtmlPair *pages; // NULL: no page is wanted
+    HtmlPair *pages; // NULL without --html
     Html html;
     bool *ready;
-    size_t next; // pair to be taken
+    size_t next; // the next pair that a thread will take
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    Mask mask; // of all pairs; empty: none
+    Mask mask; // for all pairs; empty if there is none
     time_t started;
     double start_ms;
 } Work;
 
-// The file for this pair in the folder, "frame_0001.png" or "frame_0001.pfm.png"; the file itself
-// if there is just one pair. NULL for NULL, or when memory is short.
+// The path of a pair's heat map or sheet: a file in the folder `path` with the name of the pair's
+// image, such as "frame_0001.png" or "frame_0001.pfm.png". If there is only one pair, `path`
+// itself. NULL if `path` is NULL or memory is short.
 static char *name_drawing(const Work *work, const char *path, const Pair *pair)
 {
     char *name;
@@ -399,7 +402,8 @@ static void *run_thread(void *argument)
     return NULL;
 }
 
-// The pair's place on the page, whose images are written at once.
+// Adds the pair to the HTML page, which writes its images to the file at once. If that fails,
+// threads take no more pairs.
 static Result add_to_page(Work *work, size_t i, Error *error)
 {
     Result result =
@@ -407,12 +411,13 @@ static Result add_to_page(Work *work, size_t i, Error *error)
     html_pair_destroy(&work->pages[i]);
     if (result == RESULT_OK) return RESULT_OK;
     pthread_mutex_lock(&work->lock);
-    work->next = work->list->count; // no more pairs: they would have no place
+    work->next = work->list->count;
     pthread_mutex_unlock(&work->lock);
     return result;
 }
 
-// Waits for each verdict in turn. A pair that nobody took, after an interruption, ends it.
+// Waits for the verdicts in order and prints each. After an interruption some pairs have no
+// verdict; the loop ends at the first of them.
 static Result print_verdicts(Work *work, Error *error)
 {
     Progress progress;
@@ -457,10 +462,10 @@ static Result run_threads(Work *work, Error *error)
     return result;
 }
 
-// ---
+// --- Results.
 
-// Reports, the closing line and the exit status. Status 3 names the first culprit on stderr as
-// well, where the other programs name theirs.
+// Writes the reports, prints the last line and returns the exit status. If an image cannot be read
+// (status 3), its error also goes to stderr, where the other programs print errors.
 static Result conclude(Work *work, Error *error)
 {
     const Command *command = work->command;
@@ -487,13 +492,13 @@ static Result conclude(Work *work, Error *error)
     return result;
 }
 
-// One mask for all is read before the images, once, so that a wrong one is named once.
+// A mask for all pairs is read once before the images, so an error in it is reported only once.
 static Result read_mask(Mask *mask, const Command *command, Error *error)
 {
     *mask = (Mask){0};
     struct stat status;
     if (!command->mask || stat(command->mask, &status) != 0 || S_ISDIR(status.st_mode))
-        return RESULT_OK; // its place is looked at with those of the images
+        return RESULT_OK; // masks in a folder or by pattern are found with the images
     return mask_read(mask, command->mask, error);
 }
 

@@ -17,13 +17,13 @@ typedef enum Kind { KIND_FILE, KIND_FOLDER, KIND_PATTERN } Kind;
 
 static const char *const KIND_NAMES[] = {"a file", "a folder", "a pattern"};
 
-// One of the two places.
+// One of the two arguments: a file, a folder or a pattern of numbered files.
 typedef struct Side {
     const char *text;
     Kind kind;
-    bool missing; // and that is legal
+    bool missing; // does not exist, which is allowed for A with --update
     Target target;
-    size_t count; // images found so far and sorted, of the first side only
+    size_t count; // sides[0] only: pairs listed so far, sorted by name
 } Side;
 
 static Result fail_memory(Error *error)
@@ -45,9 +45,9 @@ static void find_kind(Side *side)
     side->missing = !exists;
 }
 
-// --- An image's name at each side.
+// --- Names of images.
 
-// Where the image is: `name` in a folder, or number `frame` of a pattern.
+// The path of an image: `name` in a folder, or number `frame` of a pattern.
 static char *place_of(const Side *side, const char *name, int frame)
 {
     char *path;
@@ -60,7 +60,7 @@ static char *place_of(const Side *side, const char *name, int frame)
 static bool is_image(const char *name)
 {
     const char *dot = strrchr(name, '.');
-    // JPEG files are among them to be refused with the reason.
+    // JPEG files are listed so that they are refused with a message instead of ignored.
     static const char *const SUFFIXES[] = {".png", ".pfm", ".exr", ".jpg", ".jpeg"};
     for (size_t i = 0; i < sizeof SUFFIXES / sizeof *SUFFIXES && dot; ++i)
         if (strcasecmp(dot, SUFFIXES[i]) == 0) return name[0] != '.';
@@ -69,7 +69,7 @@ static bool is_image(const char *name)
 
 // --- The list.
 
-// Numbers by value, so that a digit more is a later frame.
+// Compares numbers in names by value, so frame_10 comes after frame_9.
 static int order(const void *a, const void *b)
 {
     return strverscmp(((const Pair *)a)->a, ((const Pair *)b)->a);
@@ -80,7 +80,7 @@ static Result add_pair(PairList *list, const Side sides[2], const char *name, in
 {
     char *a = place_of(&sides[0], name, frame);
     if (!a) return fail_memory(error);
-    // Those of the folders before are sorted.
+    // The pairs of earlier sides are sorted; look there for the partner of this image.
     Pair key = {.a = a}, *pair = NULL;
     if (from >= 0 && sides[0].count)
         pair = bsearch(&key, list->pairs, sides[0].count, sizeof *pair, order);
@@ -118,7 +118,8 @@ static DIR *open_folder(const Side *side)
     return directory;
 }
 
-// Adds what is in the place `side`, of which A or B is made as `from` says, and sorts.
+// Lists the images in the folder of `side` and sorts all pairs. `from`: 0 if these images are A, 1
+// if they are B, -1 for neither.
 static Result list_side(PairList *list, Side sides[2], const Side *side, int from, Error *error)
 {
     DIR *directory = open_folder(side);
@@ -141,7 +142,7 @@ static Result list_side(PairList *list, Side sides[2], const Side *side, int fro
 
 // --- Goldens by platform.
 
-// The folder of a level, which need not be there. `text` is to be freed.
+// The folder of a level; it may not exist. Free `text`.
 static Side side_of_level(const Side *goldens, Level level, const char *platform, char **text)
 {
     *text = place_of(goldens, level_folder(level, platform), 0);
@@ -163,7 +164,8 @@ static Result list_levels(PairList *list, Side sides[2], const PairOptions *opti
     return result;
 }
 
-// Where the image of this name is at the level, and whether it is there. NULL: no memory.
+// The path of the golden image with this name at this level, and whether it exists. NULL: no
+// memory.
 static char *golden_of(const Side *goldens, Level level, const PairOptions *options,
                        const char *name, bool *there)
 {
@@ -175,7 +177,8 @@ static char *golden_of(const Side *goldens, Level level, const PairOptions *opti
     return path;
 }
 
-// A is the golden that counts, or where a new one goes; the fallback is the next one that counts.
+// Sets A to the golden image that applies, or to the path of a new one. The fallback is the next
+// golden image that would apply without A.
 static Result choose_golden(Pair *pair, const Side *goldens, const PairOptions *options,
                             Error *error)
 {
@@ -204,9 +207,10 @@ static Result choose_golden(Pair *pair, const Side *goldens, const PairOptions *
     return pair->a ? RESULT_OK : fail_memory(error);
 }
 
-// --- What is said about images by name: that they could not be made, what makes them.
+// --- Files with lines about images: --unrendered (why an image is missing), --commands (what makes
+// it).
 
-// A name of one image or, with a number's place, of several. To be destroyed.
+// The name of one image, or a pattern such as frame_%d.png for several. To be destroyed.
 static Side side_of_name(const char *name)
 {
     Side named = {.text = name, .kind = KIND_FILE};
@@ -216,7 +220,7 @@ static Side side_of_name(const char *name)
     return named;
 }
 
-// Whether the pair has this name, or a number in it.
+// Whether `named` means this pair.
 static bool is_of(const Side *named, const Pair *pair)
 {
     int frame;
@@ -226,12 +230,12 @@ static bool is_of(const Side *named, const Pair *pair)
 
 static Result give_text(char **to, const char *text, Error *error)
 {
-    if (*to) return RESULT_OK; // the first one counts
+    if (*to) return RESULT_OK; // the first line about an image counts
     *to = strdup(text);
     return *to ? RESULT_OK : fail_memory(error);
 }
 
-// Of these lines there are two kinds.
+// Handles one line for the images that `named` means: give_reason or give_command.
 typedef Result GiveLine(PairList *list, Side sides[2], const Side *named, const char *text,
                         Error *error);
 
@@ -261,7 +265,7 @@ static Result give_command(PairList *list, Side sides[2], const Side *named, con
     return result;
 }
 
-// Lines "NAME: TEXT".
+// Reads lines of the form "NAME: TEXT".
 static Result read_lines(PairList *list, Side sides[2], const char *path, const char *what,
                          GiveLine *give, Error *error)
 {
@@ -285,7 +289,7 @@ static Result read_lines(PairList *list, Side sides[2], const char *path, const 
     return result;
 }
 
-// Options about names of images are for folders.
+// Refuses options that name single images if A and B are not folders.
 static Result check_kind(Kind kind, const PairOptions *options, Error *error)
 {
     const char *option = options->unrendered ? "--unrendered"
@@ -309,7 +313,7 @@ static void pair_destroy(Pair *pair)
     free(pair->fallback);
 }
 
-// Leaves the pairs of this name.
+// Removes all pairs that `name` does not mean.
 static Result keep_only(PairList *list, const char *name, Error *error)
 {
     Side named = side_of_name(name);
@@ -327,7 +331,7 @@ static Result keep_only(PairList *list, const char *name, Error *error)
 
 // --- Masks.
 
-// Whether the two file names are equal but for their suffixes.
+// Whether two file names are equal without their suffixes.
 static bool have_one_stem(const char *a, const char *b)
 {
     const char *dot_a = strrchr(a, '.'), *dot_b = strrchr(b, '.');
@@ -341,7 +345,8 @@ static const char *file_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-// Gives the mask, a file in a folder or one of a pattern, to its pairs. `all`: all pairs are there.
+// Gives a mask to the pairs that it belongs to. `all`: the list was not shortened by --only, so a
+// mask without a pair is an error.
 static Result give_mask(PairList *list, const Side *masks, const char *name, int frame, bool all,
                         Error *error)
 {
@@ -411,7 +416,7 @@ static Result find_masks(PairList *list, const Side sides[2], const PairOptions 
     return result;
 }
 
-// ---
+// --- Pairs of two files, folders or patterns.
 
 static Result pair_files(PairList *list, const Side sides[2], Error *error)
 {

@@ -27,7 +27,8 @@ static void set_outcome(Verdict *verdict, Outcome outcome, const Error *error)
     memcpy(verdict->text, error->text, sizeof error->text);
 }
 
-// An image that cannot be read has a fault of its own, or memory is short.
+// Bad input is the image's own fault (OUTCOME_UNREADABLE); any other error, such as no memory, is
+// not.
 static void set_unreadable(Verdict *verdict, Result result, const Error *error)
 {
     set_outcome(verdict, result == RESULT_BAD_INPUT ? OUTCOME_UNREADABLE : OUTCOME_FAILED, error);
@@ -44,7 +45,7 @@ static void copy_reference(Verdict *verdict, const Pair *pair)
     bytes_destroy(&file);
 }
 
-// Whether the file is an image of the same pixels, whatever the texts in it.
+// Whether the file is an image with the same pixels. Its texts may differ.
 static bool is_equal(const char *path, const Image *image)
 {
     Image other;
@@ -62,7 +63,9 @@ static void drop_reference(Verdict *verdict, const Pair *pair)
     if (!verdict->dropped) set_outcome(verdict, OUTCOME_FAILED, &error);
 }
 
-// Where A's own is within the limits, it stays, so it is A that must be equal to the fallback.
+// Without a fallback, B replaces a reference that differs. With a fallback that is equal to the new
+// reference, A is removed instead. A reference within the limits stays the reference, so in that
+// case A is compared with the fallback.
 static void update(Verdict *verdict, const Pair *pair, const Image *b)
 {
     bool same = verdict->outcome == OUTCOME_SAME;
@@ -76,7 +79,8 @@ static void update(Verdict *verdict, const Pair *pair, const Image *b)
     image_destroy(&a);
 }
 
-// Writes the heat map, or the sheet of A, B and the heat map. `written` takes the file's name.
+// Writes the heat map, or a sheet of A, B and the heat map. On success `written` gets the file's
+// name.
 static Result draw(char **written, const char *path, bool sheet, const Image *a, const Image *b,
                    const float *map, Error *error)
 {
@@ -85,12 +89,14 @@ static Result draw(char **written, const char *path, bool sheet, const Image *a,
     Result result = sheet ? heat_map_create_sheet(&image, a, b, map, error)
                           : heat_map_create(&image, map, a->width, a->height, error);
     THEN(result, png_write(path, &image, error));
-    if (result == RESULT_OK) *written = strdup(path); // without memory a report does not name it
+    if (result == RESULT_OK)
+        *written = strdup(path); // if memory is short, reports do not name the file
     image_destroy(&image);
     return result;
 }
 
-// The heat map in memory, if any pixel differs, by few colours. Spoils the errors.
+// Encodes the heat map in memory if any pixel differs. Rounds the values in `map` to the few
+// colours of a palette.
 static Result keep_map(Bytes *png, float *map, const CompareResult *figures, Error *error)
 {
     Image image = {0};
@@ -115,7 +121,7 @@ static Result measure(Verdict *verdict, float *map, const Image *a, const Image 
     return keep_map(options->map, map, &verdict->figures, error);
 }
 
-// NULL where the pair has none. `own` is to be destroyed.
+// The pair's own mask or the mask of all pairs; `mask` is NULL without any. Destroy `own`.
 static Result read_mask(Mask *own, const Mask **mask, const Pair *pair, const Image *a,
                         const VerdictOptions *options, Error *error)
 {
@@ -170,8 +176,8 @@ static void compare_with(Verdict *verdict, const Pair *pair, const Image *b,
     image_destroy(&a);
 }
 
-// B first: what can't be read never becomes a reference, while an unreadable reference may be
-// replaced.
+// Reads B first, so a file that cannot be read never becomes a reference. A reference that cannot
+// be read may be replaced.
 static void find(Verdict *verdict, const Pair *pair, const VerdictOptions *options)
 {
     Image b;
@@ -288,7 +294,7 @@ void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *st
 
 // --- JSON.
 
-// jansson takes no text that is not UTF-8: a name of other bytes becomes "?" here.
+// jansson accepts only UTF-8; other names become "?".
 static json_t *text_to_json(const char *text)
 {
     json_t *value = json_string(text);

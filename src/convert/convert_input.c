@@ -33,8 +33,9 @@ static Result read_fps(CacheStrands *strands, Error *error)
     return strands->fps > 0 ? RESULT_OK : refuse_cache(strands, "its scene has no fps", error);
 }
 
-// --- The hair: of each section runs of strands of equal vertex counts, then the strands' numbers
-// in their file, in the order of the runs. A first pass counts, a second one places.
+// --- The hair in a cache. For each section: runs of strands with equal vertex counts, then the
+// strands' numbers in the hair file, in the order of the runs. count_all checks and counts them,
+// place_all stores them.
 
 typedef struct Counts {
     uint64_t strands, vertices;
@@ -70,8 +71,9 @@ static Counts count_all(const Bytes *hair, uint32_t *sections)
     return counts;
 }
 
-// `sizes` takes each strand's vertices at its place + 1, 0 where there is none yet. The section's
-// strands are first_strand and following.
+// Stores the strands of one section, which begin at *first_strand, and moves *first_strand behind
+// them. sizes[s + 1] gets the vertex count of strand s; it is 0 for strands that have not been seen
+// yet. False if a strand occurs twice.
 static bool place_section(CacheStrands *to, Reader *reader, uint32_t section,
                           uint32_t *first_strand, uint32_t *sizes)
 {
@@ -108,11 +110,11 @@ static Result place_all(CacheStrands *strands, Error *error)
     return RESULT_OK;
 }
 
-// Frames are compressed, so the file's size says little of their vertices; but a small file shall
-// not take all memory.
+// Frames are compressed, so the file's size does not limit the number of vertices. This check keeps
+// a small damaged file from allocating all memory.
 static bool is_too_much(const CacheStrands *strands, const Counts *counts)
 {
-    enum { FACTOR = 64, SURE_BYTES = 64 << 20, VERTEX_BYTES = 36 }; // layout, frame as read, frame
+    enum { FACTOR = 64, SURE_BYTES = 64 << 20, VERTEX_BYTES = 36 }; // layout and two frames
     return counts->vertices * VERTEX_BYTES > FACTOR * strands->cache.file.size + SURE_BYTES;
 }
 
@@ -185,7 +187,8 @@ static bool frame_is_there(const ConvertInput *input, int frame)
     return there;
 }
 
-// Up to the last one before a gap.
+// The last frame before the first missing file, or the last frame of a cache or of a file with
+// frames.
 static int find_last(const ConvertInput *input)
 {
     int last = input->first;
@@ -195,7 +198,7 @@ static int find_last(const ConvertInput *input)
     return last - 1;
 }
 
-// --first and --last are numbers that the file has.
+// Checks that the file has the frames --first and --last.
 static Result check_framed(const ConvertInput *input, Error *error)
 {
     int first = input->frames.first, last = find_last(input);
@@ -206,7 +209,7 @@ static Result check_framed(const ConvertInput *input, Error *error)
                      first, last);
 }
 
-// Whether the last frame that is there is the last that there was.
+// Fails if frames are missing: the cache is unfinished, or numbered files continue after a gap.
 static Result check_whole(const ConvertInput *input, Error *error)
 {
     const CacheFile *cache = &input->cache.cache;
@@ -264,7 +267,7 @@ static void report_mended(const ConvertInput *input, const StrandsReport *report
                 quote(path).text);
 }
 
-// `frames`: NULL for the first frame only.
+// `frames`: NULL to read the first frame only.
 static Result read_file(ConvertInput *input, const char *path, int file, Strands *strands,
                         StrandsFrames *frames, Error *error)
 {
@@ -321,7 +324,7 @@ void convert_input_close(ConvertInput *input)
 
 // --- Reading.
 
-// The unit and axis that are guessed for the first frame hold for all.
+// The unit and the up axis that were guessed for the first frame are used for all later ones.
 static Result read_numbered(ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     char *name = target_name_frame(&input->pattern, frame);
@@ -335,7 +338,7 @@ static Result read_numbered(ConvertInput *input, int frame, Strands *strands, Er
     return result;
 }
 
-// The single file's, of which `still` has all but the positions.
+// A frame of a single file: a copy of `still` with the positions of the frame.
 static Result read_framed(const ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     size_t count = input->still.vertex_count;

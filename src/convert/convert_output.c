@@ -23,7 +23,7 @@ static bool is_npz(const char *path, int format)
     return format ? format - 1 == FORMAT_NPZ : strcasecmp(suffix_of(path), ".npz") == 0;
 }
 
-// With --format any name will do.
+// With --format any name is allowed.
 static Result parse_target(ConvertOutput *output, Error *error)
 {
     if (!output->format && strcmp(output->path, "-") == 0)
@@ -67,9 +67,10 @@ void convert_output_close(ConvertOutput *output)
     *output = (ConvertOutput){0};
 }
 
-// --- Formats of scenes, and files of all frames.
+// --- Output for scenes (curves with widths), and files that hold all frames.
 
-// A diameter for each strand, thick ones by the file's thickness over its mean, or one for all.
+// A diameter for each strand, in proportion to the file's thickness, or one for all strands if the
+// file has no thickness by strand.
 static Result find_widths(ConvertOutput *output, const Strands *strands, CurvesLook *look,
                           Error *error)
 {
@@ -102,7 +103,8 @@ static Result describe(ConvertOutput *output, const Strands *strands, bool anima
     return find_widths(output, strands, &options->look, error);
 }
 
-// The first frame's strands are kept, since the writer looks at their numbers.
+// Keeps the strands of the first frame, because the writer reads their layout and colours for all
+// frames.
 static Result open_frames(ConvertOutput *output, Strands *strands, Error *error)
 {
     CurvesOptions options;
@@ -140,7 +142,7 @@ static Result add_frame(ConvertOutput *output, int frame, Strands *strands, Erro
     return frames_file_add(&output->frames, frame, (const float(*)[3])now->position, error);
 }
 
-// --- Any kind.
+// --- Output of any kind.
 
 static Result write_file(ConvertOutput *output, int frame, const Strands *strands, Error *error)
 {

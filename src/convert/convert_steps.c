@@ -10,7 +10,8 @@
 
 // --- Reading values.
 
-// A decimal number at the text's begin; returns what follows, NULL if there is none.
+// Reads a decimal number at the beginning of the text. Returns the text behind it, NULL if there is
+// no number.
 static const char *scan_number(const char *text, double *number)
 {
     char *end;
@@ -131,7 +132,7 @@ Result convert_steps_parse(ConvertSteps *steps, const OptionSteps *options, Erro
     return result;
 }
 
-// --- Doing it.
+// --- Applying steps.
 
 static bool keeps(const ConvertStep *step, const Strands *strands, uint32_t s)
 {
@@ -159,9 +160,10 @@ static Result pick_group(Strands *strands, uint32_t group, Error *error)
     return result == RESULT_OK ? result : error_prefix(error, result, "--group: ");
 }
 
-// --- On a mesh.
+// --- Steps that use a mesh.
 
-static const double FITS_BADLY = 0.01; // m, of half of the roots
+// A warning is printed if half of the roots are farther than this from the mesh, m.
+static const double FITS_BADLY = 0.01;
 
 static const char *const MESH_STEPS[] = {"fit", "attach", "push-out"};
 
@@ -261,6 +263,6 @@ Result convert_steps_apply(ConvertSteps *steps, Strands *strands, Error *error)
     Result result = RESULT_OK;
     for (int i = 0; i < steps->count && result == RESULT_OK; i++)
         result = apply(steps, &steps->step[i], strands, error);
-    steps->messages = NULL; // of the first frame alone
+    steps->messages = NULL; // messages are printed for the first frame only
     return result;
 }

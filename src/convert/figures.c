@@ -29,7 +29,8 @@ static void subtract(const float a[3], const float b[3], Double3 d)
     for (int k = 0; k < 3; k++) d[k] = (double)b[k] - (double)a[k];
 }
 
-// The angle between two directions, radians, by arctangent: exact for small ones, too.
+// The angle between two directions in radians. The arctangent is accurate for small angles, where
+// the arc cosine is not.
 static double angle(const Double3 a, const Double3 b)
 {
     Double3 c;
@@ -90,7 +91,7 @@ static Result collect_roots(const Strands *strands, double *values, size_t *coun
     return result;
 }
 
-// Of vertices inside alone, mm.
+// The depths of the vertices that are inside the mesh, in mm.
 static Result collect_depths(Figures *figures, const Strands *strands, const Surface *surface,
                              double *values, size_t *count, Error *error)
 {
@@ -107,9 +108,9 @@ static Result collect_depths(Figures *figures, const Strands *strands, const Sur
     return RESULT_OK;
 }
 
-// --- Their distribution.
+// --- Distributions.
 
-// Sorts the values.
+// Sorts `values`.
 static Figure summarise(double *values, size_t count)
 {
     if (count == 0) return (Figure){0};
@@ -125,7 +126,7 @@ static Figure summarise(double *values, size_t count)
                     .mean = sum / (double)count};
 }
 
-// From sorted sizes.
+// Counts strands by their number of vertices. `sizes` is sorted.
 static Result count_sizes(Figures *figures, const double *sizes, size_t count, Error *error)
 {
     figures->sizes = malloc(count * sizeof *figures->sizes + 1);
@@ -183,7 +184,8 @@ void figures_destroy(Figures *figures)
 
 // --- Text and JSON.
 
-// Few rows for many sizes: equal ranges, of whole numbers.
+// If strands have many different vertex counts, prints at most about MOST_ROWS ranges of equal
+// width.
 static void print_sizes(const Figures *figures, FILE *stream)
 {
     enum { MOST_ROWS = 12, WIDEST = 40 };

@@ -119,7 +119,7 @@ static const Option OPTIONS[] = {
      "[default 1]"},
 };
 
-// Behind a paragraph about the formats.
+// The notes of the help after the paragraph about formats.
 #define OTHER_NOTES                                                                                \
     "Steps run in the order of the command line. Lengths are metres with y up, whatever the file " \
     "uses.",                                                                                       \
@@ -181,7 +181,7 @@ static Result parse_unit(const char *name, const char *text, float *metres, Erro
     return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
 }
 
-// What is written is neither read nor written twice.
+// Checks that no output overwrites an input or another output.
 static Result check_paths(const Command *command, char **files, int count, Error *error)
 {
     PathUse *uses = calloc((size_t)count + 3, sizeof *uses);
@@ -213,7 +213,7 @@ static Result check_sense(const Command *command, int files, Error *error)
     return RESULT_OK;
 }
 
-// Steps on a mesh want one, and a mesh wants something to do.
+// Steps that use a mesh need --mesh, and --mesh without any use of the mesh is an error.
 static Result check_mesh(const Job *job, Error *error)
 {
     const Command *command = &job->command;
@@ -240,7 +240,8 @@ static void describe_formats(char *text, size_t size)
              names, suffixes);
 }
 
-// Of a file with time: all frames for what holds them or if some are asked for.
+// Whether to read all frames of a file with animation: if the output can hold frames, or if --first
+// or --last is given.
 static bool wants_frames(const Command *command)
 {
     bool still = !command->output || convert_output_is_still(command->output, command->format);
@@ -296,7 +297,8 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
 
 // --- The work.
 
-// After the first frame, whose unit and axis count where the mesh has none.
+// Reads the mesh after the first frame of hair, so that the hair's unit and up axis can serve as
+// defaults for the mesh.
 static Result read_mesh(Job *job, Error *error)
 {
     const char *path = job->command.mesh;
@@ -356,7 +358,8 @@ static Result do_frame(Job *job, int frame, Error *error)
         THEN(result, figures_measure(&job->figures, &strands, job->steps.surface, error));
     activity_set("writing");
     if (command->output) THEN(result, convert_output_add(&job->output, frame, &strands, error));
-    // Joined files became groups here: a format without groups loses nothing that a file had.
+    // A group for each joined file was made here, not read from a file. So an output format without
+    // groups loses nothing of the input.
     if (!(job->input.features & STRANDS_HAS_GROUP))
         job->output.lost &= ~(uint32_t)STRANDS_HAS_GROUP;
     strands_destroy(&strands);
@@ -382,7 +385,7 @@ static Result do_frames(Job *job, Error *error)
     return result;
 }
 
-// Standard output may be the hair's.
+// The stream for messages: stderr if hair is written to standard output.
 static FILE *messages_of(const Command *command)
 {
     return command->output && outfile_is_stdout(command->output) ? stderr : stdout;
@@ -411,7 +414,7 @@ static json_t *output_to_json(const ConvertOutput *output)
                      FORMAT_TABLE[output->kind]->name, "files", output->files, "left_out", lost);
 }
 
-// `output`: NULL if none is written.
+// `output`: NULL if no hair is written.
 static Result write_json(const char *path, const ConvertInput *input, const Figures *figures,
                          const ConvertOutput *output, Error *error)
 {

@@ -15,9 +15,9 @@ typedef struct Farm {
     FurMap density, length;
     FurComb comb;
     FurGuides guides;
-    SurfacePoint *roots; // [count], guides first
+    SurfacePoint *roots; // [count]; the roots of guides come first
     uint32_t count;
-    Double3 *vertices; // [recipe's]
+    Double3 *vertices; // [recipe->vertices], of one strand
 } Farm;
 
 static void farm_destroy(Farm *farm)
@@ -113,7 +113,7 @@ static void store(const Farm *farm, Strands *strands, uint32_t s, const SurfaceP
     for (int i = 0; i < 2 && strands->strand_uv; i++) strands->strand_uv[s][i] = (float)uv[i];
 }
 
-// NaN where the map is not a number.
+// The length of a strand at this root, m. NaN if the length map is not a number there.
 static double find_length(const Farm *farm, const SurfacePoint *root, Random *random)
 {
     const FurRecipe *recipe = farm->recipe;

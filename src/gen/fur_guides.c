@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 static const double EXTRA = 1.2;
-static const double RISE = 100.0; // rad/m: how fast hair turns up that lies too low
+static const double RISE = 100.0; // rad/m: how fast hair that lies too low turns upwards
 
 void fur_guides_line_at(const Double3 *line, double step, double s, Double3 place)
 {
@@ -16,18 +16,19 @@ void fur_guides_line_at(const Double3 *line, double step, double s, Double3 plac
     double3_mix(line[i], line[i + 1], at - i, place);
 }
 
-// What grows.
+// A guide while it grows.
 typedef struct Shoot {
     const FurRecipe *recipe;
     const Surface *surface;
     const FurComb *comb;
     double step, volume;
-    double height, goal; // m: how far its end is from the surface, and is to be
-    SurfacePoint under;  // the surface's point nearest to its end
+    double height, goal; // m: distance of its end from the surface, and the wanted distance
+    SurfacePoint under;  // the point on the surface nearest to its end
     Double3 direction;
 } Shoot;
 
-// Between normal and combed direction, which may be shorter than 1: then hair stands up more.
+// Lifts the combed direction towards the normal by lift_deg. A combed direction may be shorter than
+// 1; then the normal has more weight and hair stands up more.
 static void set_first_direction(Shoot *shoot, const Double3 normal)
 {
     Double3 combed, direction = {0};
@@ -39,7 +40,7 @@ static void set_first_direction(Shoot *shoot, const Double3 normal)
     double3_copy(direction, shoot->direction);
 }
 
-// How much the comb is felt at arc length s: it fades over the second half of its reach.
+// The strength of the comb at arc length s. It fades to 0 over the second half of comb_reach.
 static double comb_share(const FurRecipe *recipe, double s)
 {
     if (recipe->comb_reach <= 0.0) return 1.0;
@@ -83,10 +84,11 @@ static void turn(Shoot *shoot, const Double3 at, double s)
     double3_normalize(d);
 }
 
-// A step in the shoot's direction, or as near to that as it ends outside and hardly nearer to the
-// surface than it began: again, since the next nearest point may be on another side. The direction
-// loses what leads inward, but gains nothing outward: a shoot slides along what is in its way and
-// does not bounce off.
+// Makes one step in the shoot's direction. If the end of the step would be inside the surface or
+// clearly nearer to it than `from`, the inward part of the direction is removed and the step is
+// tried again, up to four times, because the nearest point may then lie on another side. The
+// direction never gains an outward part, so a shoot slides along an obstacle and does not bounce
+// off.
 static void step(Shoot *shoot, const Double3 from, Double3 to)
 {
     double least = fmax(0.9 * fmin(shoot->height, shoot->goal), shoot->recipe->root_lift);

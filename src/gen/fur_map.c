@@ -59,7 +59,7 @@ static double texel(const Image *image, int64_t x, int64_t y, int channel)
     return image->pixels[at] / 255.0;
 }
 
-// Texels have their value in their middles.
+// Texel values are defined at the centres of texels.
 static double sample(const Image *image, const double uv[2], int channel)
 {
     double x = (uv[0] - floor(uv[0])) * image->width - 0.5;
@@ -81,8 +81,8 @@ static double evaluate(const FurMap *map, const Surface *surface, const SurfaceP
     return formula_evaluate_named(&map->formula, values);
 }
 
-// Of an image: a channel, 0 to 2, between 0 and 1, bilinear, as it stands in the file (sRGB or
-// not).
+// The value of an image's channel (0 to 2), between 0 and 1, bilinear. Values are used as stored,
+// without conversion from sRGB.
 static double read_channel(const FurMap *map, const Surface *surface, const SurfacePoint *point,
                            int channel)
 {
@@ -103,7 +103,7 @@ double fur_map_at(const FurMap *map, const Surface *surface, const SurfacePoint 
 
 // --- Combs.
 
-// Cuts the text at commas outside of parentheses; returns the number of parts.
+// Splits the text at commas outside parentheses. Returns the number of parts.
 static int cut_text(char *text, char *part[3])
 {
     int depth = 0, count = 1;
@@ -153,7 +153,8 @@ static void read_image_comb(const FurComb *comb, const Surface *surface, const S
     for (int i = 0; i < 2; i++) {
         double level = read_channel(&comb->axis[0], surface, point, i);
         double share = 2.0 * level - 1.0;
-        // No level of 8 bits is a half: the two beside it are none.
+        // With 8 bits no level is exactly one half, so the two levels beside it count as "no
+        // direction".
         double small = comb->axis[0].image.kind == IMAGE_8 ? 0.004 : 2e-5;
         if (fabs(share) > small) double3_add_scaled(vector, share, axis[i]);
     }

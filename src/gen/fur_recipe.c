@@ -43,7 +43,7 @@ Result fur_recipe_check(const FurRecipe *recipe, Error *error)
 
 // --- The command line.
 
-// 0 or NULL where not given.
+// Options that were not given are 0 or NULL.
 typedef struct Command {
     FurRecipe recipe;
     GenOutput output;
@@ -123,7 +123,7 @@ static const Option OPTIONS[] = {
      "waves of --frizz per metre [default 60]"},
     {"flyaways", 0, OPTION_REAL, AT(flyaways), "SHARE", 0, 1,
      "share of strands that hardly clump and have three times as much frizz [default 0]"},
-    // Besides.
+    // Other.
     {"followers", 0, OPTION_WHOLE, AT(followers), "N", 1, 1000,
      "followers per strand that the file asks the renderer to draw, in formats that store it"},
     {"thickness", 0, OPTION_REAL, AT(thickness), "M", 1e-7, 1,
@@ -170,7 +170,7 @@ const OptionsProgram FUR_RECIPE_PROGRAM = {
     .examples = EXAMPLES,
 };
 
-// An option whose values only some formats hold.
+// Refuses an option whose values the output format cannot store.
 static Result check_holds(const Command *command, const char *option, uint32_t features,
                           Error *error)
 {

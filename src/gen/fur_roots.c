@@ -10,7 +10,7 @@
 
 typedef struct Dice {
     const Surface *surface;
-    double *sum; // [triangle_count]: area of the triangles up to each
+    double *sum; // [triangle_count]: area of all triangles up to and with this one
     Random random;
 } Dice;
 
@@ -27,8 +27,9 @@ static bool begin_dice(Dice *dice, const Surface *surface, uint64_t seed)
     return dice->sum != NULL;
 }
 
-// A triangle by its share of the area, then a point of it: with even s and t, 1 - sqrt(s) and
-// t sqrt(s) are even weights (Turk 1990, "Generating random points in triangles").
+// Picks a triangle with probability proportional to its area, then a uniformly distributed point in
+// it: with uniform s and t, the barycentric weights 1 - sqrt(s) and t sqrt(s) (Turk 1990,
+// "Generating random points in triangles").
 static SurfacePoint throw_dice(Dice *dice)
 {
     uint32_t low = 0, high = dice->surface->triangle_count - 1;
@@ -51,7 +52,7 @@ static Result fail_density(double value, const SurfacePoint *at, const char *nam
                      at->place[0], at->place[1], at->place[2], name);
 }
 
-// The density at points by area, and the largest of them.
+// Samples the density at random points of the surface. Returns its largest value and its mean.
 static Result find_densest(Dice *dice, const FurMap *density, const char *name, double *most,
                            double *mean, Error *error)
 {
@@ -81,19 +82,19 @@ Result fur_roots_measure(const Surface *surface, const FurMap *density, uint32_t
     return result;
 }
 
-// --- Elimination.
+// --- Sample elimination (Yuksel 2015).
 
 typedef struct Crowd {
     uint32_t count;
-    float (*point)[3]; // what the tree is of
-    double *reach;     // how far a point is from its neighbours if all are even
-    double *weight;    // how crowded it is; of those eliminated -1
+    float (*point)[3]; // the points in the k-d tree
+    double *reach;     // half the distance to neighbours in an even distribution
+    double *weight;    // crowding, -1 for eliminated points
     uint32_t *heap;    // the most crowded first
-    uint32_t *place;   // in the heap
+    uint32_t *place;   // index of each point in the heap
     Nearest nearest;
 } Crowd;
 
-enum { NEIGHBOURS = 20 }; // a disc of twice the reach holds 14.5 candidates, four times what stays
+enum { NEIGHBOURS = 20 }; // within twice the reach there are 14.5 of four times as many candidates
 
 static void crowd_destroy(Crowd *crowd)
 {
@@ -105,7 +106,8 @@ static void crowd_destroy(Crowd *crowd)
     nearest_destroy(&crowd->nearest);
 }
 
-// w = (1 - d / (2 r))^8, r that of both in the mean.
+// The weight of a neighbour at the distance d: (1 - d / (2 r))^8, where r is the mean reach of both
+// points.
 static double crowding(const Crowd *crowd, uint32_t a, const Neighbour *b)
 {
     double share = 1.0 - sqrt(b->square) / (crowd->reach[a] + crowd->reach[b->point]);
@@ -139,7 +141,8 @@ static void sink(Crowd *crowd, uint32_t at, uint32_t count)
     put(crowd, at, item);
 }
 
-// Takes away the most crowded until `left` are left; weights only become smaller on the way.
+// Removes the point with the largest weight until `left` points remain. Removing a point can only
+// reduce the weights of others, so heap items only sink.
 static void eliminate(Crowd *crowd, uint32_t left)
 {
     Neighbour found[NEIGHBOURS];
@@ -181,8 +184,8 @@ static bool crowd_create(Crowd *crowd, const SurfacePoint *points, uint32_t coun
            RESULT_OK;
 }
 
-// How far the neighbours of a point would be if `left` points stayed, evenly: points that are even
-// themselves have six, whose distances grow by the root of what is taken away.
+// Estimates half the distance between neighbours if `left` points remain, evenly distributed. An
+// even point has six neighbours; their distances grow with the square root of count / left.
 static void guess_reach(Crowd *crowd, uint32_t left)
 {
     for (uint32_t i = 0; i < crowd->count; i++) {
@@ -194,7 +197,7 @@ static void guess_reach(Crowd *crowd, uint32_t left)
     }
 }
 
-// Brings those that stay to the front.
+// Moves the remaining points to the front.
 static void part(const Crowd *crowd, SurfacePoint *points)
 {
     for (uint32_t i = 0, front = 0; i < crowd->count; i++) {
@@ -219,7 +222,8 @@ Result fur_roots_order(SurfacePoint *roots, uint32_t count, uint32_t first, uint
                        Error *error)
 {
     Random random = random_create(seed, 0x6f72646572); // "order"
-    // By quarters: neighbours are looked up once for each, and must not all be gone before its end.
+    // Keep a quarter of the points in each round. Neighbours are looked up once a round, so some of
+    // them must still exist at its end.
     for (uint32_t now = count, left; first > 0 && now > first; now = left) {
         Crowd crowd;
         left = now / 4 > first ? now / 4 : first;
@@ -239,7 +243,7 @@ Result fur_roots_order(SurfacePoint *roots, uint32_t count, uint32_t first, uint
 
 // --- Roots.
 
-// Random points, by the density among those by area.
+// Picks random points with probability proportional to the density (rejection sampling).
 static Result pick(SurfacePoint *points, double *value, uint32_t count, Dice *dice,
                    const FurMap *density, double most, const char *name, Error *error)
 {
@@ -255,8 +259,8 @@ static Result pick(SurfacePoint *points, double *value, uint32_t count, Dice *di
 
 enum { CANDIDATES = 4 };
 
-// A root's own share of the surface, A, is that of a hexagon whose neighbours are at
-// sqrt(2 A / sqrt(3)); half of that is its reach.
+// In a hexagonal grid with the area A for each root, neighbours are at the distance sqrt(2 A /
+// sqrt(3)). The reach is half of it.
 static Result thin(SurfacePoint *points, double *value, uint32_t count, double area, Error *error)
 {
     Crowd crowd;

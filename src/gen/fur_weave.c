@@ -9,14 +9,15 @@ static double smooth(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-// Schlick 1994, "Fast alternatives to Perlin's bias and gain functions": from 0 to 1, with the
-// value b at t = 0.5.
+// Maps 0..1 to 0..1 with the value b at t = 0.5: Schlick 1994, "Fast alternatives to Perlin's bias
+// and gain functions".
 static double bias(double b, double t)
 {
     return t / ((1.0 / b - 2.0) * (1.0 - t) + 1.0);
 }
 
-// Whether two guides lead the same way, within 60 degrees: else a parting lies between them.
+// Whether two guides point in directions less than 60 degrees apart. If not, a parting lies between
+// them and they are not blended.
 static bool lead_alike(const FurGuides *guides, uint32_t a, uint32_t b)
 {
     enum { ALONG = FUR_STEPS / 4 };
@@ -28,8 +29,9 @@ static bool lead_alike(const FurGuides *guides, uint32_t a, uint32_t b)
 
 // --- Between guides.
 
-// The lines of the nearest guides from their roots on, by (1 - d/D)^2, d the distance of the root
-// and D that of the first that does not count: it fades in and out where guides change.
+// Blends the lines of the nearest guides, relative to their roots, with the weights (1 - d/D)^2: d
+// is the distance to a guide's root, D the distance to the first guide that is not used. So a
+// guide's weight is 0 where it enters or leaves the set.
 static void blend(FurWeave *weave, const FurGuides *guides, const float at[3], Double3 start)
 {
     enum { BLENDED = 4 };
@@ -53,7 +55,7 @@ static void blend(FurWeave *weave, const FurGuides *guides, const float at[3], D
     }
 }
 
-// The nearest centre of a clump that leads the same way as the nearest guide.
+// The nearest centre of a clump whose direction is like that of the nearest guide.
 static uint32_t find_clump(const FurGuides *guides, const float at[3])
 {
     enum { TRIED = 6 };
@@ -75,7 +77,8 @@ static void gather(FurWeave *weave, const FurRecipe *recipe, const Double3 *cent
     }
 }
 
-// A strand's own direction at the root, which soon becomes that of its neighbours: within `reach`.
+// Adds a random direction at the root. Its effect on the line's direction decays over the length
+// `reach`, so that the strand then follows its neighbours.
 static void scatter(FurWeave *weave, double amount, double reach, const Double3 normal,
                     Random *random)
 {
@@ -91,7 +94,8 @@ static void scatter(FurWeave *weave, double amount, double reach, const Double3 
 
 // --- Curls.
 
-// Each step takes away what the line's direction has of the vector before it.
+// Carries a side vector along the line (parallel transport): each step removes its part along the
+// tangent.
 static void carry_side(FurWeave *weave, const Double3 reference)
 {
     Double3 side, tangent;
@@ -111,8 +115,8 @@ static void carry_side(FurWeave *weave, const Double3 reference)
     }
 }
 
-// Strands of a clump start from one side and wind by one phase and hand, so that they keep
-// together.
+// Strands of a clump share the first side vector, the phase and the handedness of curls, so they
+// stay together.
 static void set_curl(FurWeave *weave, const FurRecipe *recipe, const FurGuides *guides,
                      uint32_t clump, Random *random)
 {
@@ -191,8 +195,9 @@ void fur_weave_at(const FurWeave *weave, double s, Double3 place)
 
 // --- Vertices.
 
-// Where the curve is first `step` away from where it was at s, beyond s: in small steps, the last
-// one by its share. A curve that never is that far away ends the search.
+// The first s beyond the given one where the curve is `step` away from its place at s: marches in
+// small steps and interpolates the last one. Gives up after 40 steps if the curve never gets that
+// far.
 static double find_next(const FurWeave *weave, double s, double step)
 {
     Double3 from, to;
@@ -212,8 +217,8 @@ static double find_next(const FurWeave *weave, double s, double step)
 typedef struct Walk {
     const Surface *surface;
     double gap, step;
-    double clear;       // m: at least so far is the last vertex from the surface
-    SurfacePoint under; // near the last vertex
+    double clear;       // m: lower bound of the last vertex's distance to the surface
+    SurfacePoint under; // the point of the surface near the last vertex
 } Walk;
 
 static void aim(const Double3 from, const Double3 at, double step, Double3 to)
@@ -225,7 +230,7 @@ static void aim(const Double3 from, const Double3 at, double step, Double3 to)
     double3_add_scaled(to, step, direction);
 }
 
-// How far `at` would have to move for its height to be `least`, and in which direction.
+// How far `at` must move to have the height `least`, and in which direction.
 static double find_lack(Walk *walk, const Double3 at, double least, Double3 away, double *height)
 {
     *height = surface_nearest(walk->surface, at, &walk->under);
@@ -238,13 +243,14 @@ static double find_lack(Walk *walk, const Double3 at, double least, Double3 away
     return least - *height;
 }
 
-// Whether the end of the step and its middle are outside; else a goal for the next attempt.
+// Whether the end and the middle of the step are outside the surface. If not, `goal` is where the
+// next attempt should aim.
 static bool is_outside(Walk *walk, const Double3 from, const Double3 to, Double3 goal)
 {
     Double3 middle, away = {0};
     double height;
     double lack = find_lack(walk, to, walk->gap, away, &walk->clear);
-    if (lack <= 0.0 && walk->clear > walk->step) return true; // so is the middle
+    if (lack <= 0.0 && walk->clear > walk->step) return true; // then the middle is outside, too
     double3_copy(to, goal);
     double3_add_scaled(goal, 1.02 * lack, away);
     if (lack > 0.0) return false;
@@ -254,8 +260,9 @@ static bool is_outside(Walk *walk, const Double3 from, const Double3 to, Double3
     return lack <= 0.0;
 }
 
-// Turns the step from `from` to `to` until it is outside: by as little as that takes or, in a fold
-// of the surface where one side pushes it into the other, more and more upright.
+// Turns the step from `from` to `to` until it is outside the surface. First it turns as little as
+// possible. In a fold, where one side pushes the step into the other side, it then turns more and
+// more towards the normal. False if nothing helped.
 static bool keep_out(Walk *walk, const Double3 from, Double3 to)
 {
     enum { ATTEMPTS = 12, UPRIGHT = 8 };
@@ -291,7 +298,7 @@ uint32_t fur_weave_cut(const FurWeave *weave, const Surface *surface, const Surf
         s = find_next(weave, s, walk.step);
         fur_weave_at(weave, s, at);
         aim(vertex[v - 1], at, walk.step, vertex[v]);
-        // Distances change by no more than the way.
+        // A distance to the surface changes by at most the length of the step.
         walk.clear -= walk.step;
         if (walk.clear < gap && !keep_out(&walk, vertex[v - 1], vertex[v])) stuck++;
     }

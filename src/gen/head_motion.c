@@ -18,14 +18,14 @@ static double rise(double from, double to, double x)
     return share * share * (3 - 2 * share);
 }
 
-// The pose of the skeleton: turns are shares of a whole one.
+// The pose of the skeleton. Angles are in turns (1 = 360 degrees).
 typedef struct Skeleton {
-    double turn, nod, tilt; // of the head about its neck
-    double jaw;             // opens
-    double shrug, breath;   // m
+    double turn, nod, tilt; // rotation of the head about the neck
+    double jaw;             // opening angle
+    double shrug, breath;   // m: lift of the shoulders, of the chest
 } Skeleton;
 
-// `at`: 0 .. 1, the share of the whole motion, which begins and ends at rest in every part.
+// `at`: time from 0 to 1. The motion begins and ends at rest in all parts.
 static Skeleton pose_at(double at)
 {
     double hold = portable_sine(at / 2); // 0 at both ends; the square is smooth there
@@ -41,7 +41,7 @@ static Skeleton pose_at(double at)
     };
 }
 
-// Turns p about an axis through `pivot`: from axis u towards axis v.
+// Rotates p about an axis through `pivot`, from axis u towards axis v.
 static void turn_about(Double3 p, const Double3 pivot, int u, int v, double turns)
 {
     double c = portable_cosine(turns), s = portable_sine(turns), x = p[u] - pivot[u],
@@ -50,7 +50,8 @@ static void turn_about(Double3 p, const Double3 pivot, int u, int v, double turn
     p[v] = pivot[v] + s * x + c * y;
 }
 
-// Each part moves with its weight; along the neck the head's turns grow, so that skin twists.
+// Moves a vertex with each part by its weight. Along the neck the weight of the head's rotation
+// rises, so the skin twists.
 static void skin(const Skeleton *skeleton, Double3 p)
 {
     static const Double3 NECK = {0, -0.15, -0.02}, HINGE = {0, -0.035, 0.0};
@@ -59,7 +60,7 @@ static void skin(const Skeleton *skeleton, Double3 p)
            jaw = rise(-0.052, -0.075, y) * rise(-0.145, -0.115, y) * rise(0.0, 0.035, z),
            shoulder = rise(-0.19, -0.24, y) * rise(0.04, 0.1, fabs(p[0])),
            chest = rise(-0.2, -0.27, y) * rise(-0.02, 0.06, z);
-    turn_about(p, HINGE, 1, 2, jaw * skeleton->jaw); // down and back
+    turn_about(p, HINGE, 1, 2, jaw * skeleton->jaw); // the chin moves down and back
     p[1] += shoulder * skeleton->shrug;
     p[2] += chest * skeleton->breath;
     turn_about(p, NECK, 2, 0, head * skeleton->turn);
@@ -100,7 +101,8 @@ Result head_motion_write(const char *path, const Mesh *mesh, Error *error)
     OutFile file;
     Result result = outfile_open(&file, path, error);
     if (result == RESULT_OK) {
-        // Numbers of two and four bytes as the machine has them; .npy says which.
+        // Numbers of two and four bytes in the machine's byte order, which the header of .npy
+        // names.
         const bool big = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
         ZipWriter zip = {.out = &file};
         add(&zip, "positions.npy", big ? ">i2" : "<i2", shape, 3, points, count * sizeof *points);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tractrix-gen: makes hair and the mesh it grows on.
+// tractrix-gen: makes hair, and the mesh that it grows on.
 #include "base/activity.h"
 #include "base/interrupt_install.h"
 #include "base/paths.h"
@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-// Negative or NaN: not given.
+// Options that were not given are negative or NaN.
 typedef struct Command {
     int kind, shape, count, vertices, set, seed;
     double length, length_variation, curl_radius, curl_turns, curl_disorder;
@@ -85,7 +85,7 @@ static const OptionsProgram PROGRAM = {
 
 // --- The command line.
 
-// The defaults of each kind: a paragraph of the help.
+// Writes the defaults of each kind of hair, a paragraph of the help.
 static void write_defaults(char *text, size_t size)
 {
     size_t at = (size_t)snprintf(text, size, "Defaults.");
@@ -104,7 +104,7 @@ static void write_defaults(char *text, size_t size)
     }
 }
 
-// The first of `names` that was given; NULL: none.
+// The first of `names` that was given; NULL if there is none.
 static const char *find_given(const Command *command, const char *const *names)
 {
     for (; *names; ++names) {
@@ -191,8 +191,8 @@ static StrandsRecipe make_recipe(const Command *command)
 
 // --- The work.
 
-// Writes strands of one size to output->path and reports it unless quiet; `guides` of them are
-// guides, 0: none to speak of.
+// Writes strands of equal vertex counts to output->path and reports it unless `quiet`. `guides` is
+// the number of guides for the report; 0: the report does not mention guides.
 static Result write_strands(const GenOutput *output, const Strands *strands, uint32_t guides,
                             Error *error)
 {
@@ -301,7 +301,7 @@ static Result grow_fur(int argc, char **argv, Error *error)
     return result;
 }
 
-// ---
+// --- The program.
 
 static Result run(int argc, char **argv, Error *error)
 {

@@ -21,11 +21,11 @@ static double ramp(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-// What one strand is grown from.
+// The data of one strand while it grows.
 typedef struct Seedling {
     const StrandsRecipe *recipe;
-    Double3 root, direction; // its place; seen from the origin
-    Double3 normal;          // of the surface there
+    Double3 root, direction; // m; direction of the root from the origin
+    Double3 normal;          // of the surface at the root
     double length, phase;
     Random random;
 } Seedling;
@@ -38,14 +38,14 @@ static Seedling begin_strand(const StrandsRecipe *recipe, const ScalpRoot *root,
     double3_add_scaled(seedling.root, root->radius, root->direction);
     seedling.length =
         recipe->length * (1.0 - recipe->length_variation * random_real(&seedling.random));
-    // Slow waves over the head keep neighbours in step.
+    // The phase varies slowly over the head, so neighbours curl in step.
     const double *d = seedling.direction;
     double slow = 1.7 * sin(3.1 * d[0] + 1.0) + 1.3 * sin(4.3 * d[2]) + 1.1 * sin(3.7 * d[1] + 2.0);
     seedling.phase = slow + 2.0 * PI * recipe->curl_disorder * random_real(&seedling.random);
     return seedling;
 }
 
-// --- The thesis's random strands.
+// --- Random strands, as in the thesis.
 
 static void grow_random(Seedling *seedling, Double3 *points)
 {
@@ -61,8 +61,8 @@ static void grow_random(Seedling *seedling, Double3 *points)
 
 // --- Long hair.
 
-// Where the comb pulls at a place: back and, from the parting in front, to the sides; then down,
-// spreading a little.
+// The direction that the comb pulls at a place: back, and from the parting in front to the sides;
+// further along the strand (`share`) down and slightly outwards.
 static void comb(const Seedling *seedling, const Double3 at, double share, Double3 pull)
 {
     const double *root = seedling->direction;
@@ -73,8 +73,9 @@ static void comb(const Seedling *seedling, const Double3 at, double share, Doubl
     double3_normalize(pull);
 }
 
-// A segment of its length from `from` along `direction`, which becomes where it goes when its end
-// is kept outside by `gap`.
+// Adds a segment of the given length from `from` along `direction`. If its end is less than `gap`
+// outside the head, it is moved outwards; `direction` becomes the direction of the resulting
+// segment.
 static void grow_segment(const Seedling *seedling, const Double3 from, double segment, double gap,
                          Double3 direction, Double3 to)
 {
@@ -87,7 +88,7 @@ static void grow_segment(const Seedling *seedling, const Double3 from, double se
     double3_add_scaled(to, segment, direction);
 }
 
-// A strand that leaves along the normal and bends towards the comb's pull, `length` long.
+// Grows a strand of this length that starts along the normal and bends towards the comb's pull.
 static void grow_combed(const Seedling *seedling, double length, Double3 *points)
 {
     uint32_t count = seedling->recipe->vertices;
@@ -114,7 +115,8 @@ static double measure(const Double3 *points, uint32_t count)
     return length;
 }
 
-// Winds a smooth strand: each vertex moves sideways, in a frame that is carried along the strand.
+// Winds a smooth strand into curls: moves each vertex sideways in a frame that is transported along
+// the strand.
 static void wind(const Seedling *seedling, Double3 *points)
 {
     const StrandsRecipe *recipe = seedling->recipe;
@@ -137,7 +139,8 @@ static void wind(const Seedling *seedling, Double3 *points)
     }
 }
 
-// Winding lengthens: the smooth strand is made shorter until the wound one has its length.
+// Winding makes a strand longer, so the smooth strand is shortened until the wound strand has the
+// wanted length.
 static void grow_curls(const Seedling *seedling, Double3 *points)
 {
     double smooth = seedling->length;
@@ -170,7 +173,7 @@ static void grow_fur(Seedling *seedling, Double3 *points)
     }
 }
 
-// ---
+// --- All strands.
 
 static void grow(Seedling *seedling, Double3 *points)
 {
@@ -199,7 +202,7 @@ typedef struct Block {
     Strands *strands;
     const StrandsRecipe *recipe;
     ScalpRoot root[BLOCK];
-    uint32_t first, count; // of the strands
+    uint32_t first, count; // the strands of this block
     Double3 *points;       // [threads][recipe->vertices]
 } Block;
 
@@ -227,7 +230,7 @@ static void make_part(void *data, int part)
         make_strand(block, i, points);
 }
 
-// RESULT_INTERRUPTED or RESULT_FAILED.
+// Returns RESULT_INTERRUPTED or RESULT_FAILED on errors.
 static Result make_all(Strands *strands, const StrandsRecipe *recipe, Error *error)
 {
     size_t threads = (size_t)parallel_threads();

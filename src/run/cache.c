@@ -19,7 +19,7 @@
 
 enum { HEAD_BYTES = 4 * CACHE_HEAD_FLOATS, KEPT_BYTES = 32 << 20 };
 
-// --- The file, without the scene that it is of.
+// --- The file itself, apart from the scene that it stores.
 
 static bool add_offset(uint64_t **offsets, uint32_t *count, uint32_t *room, uint64_t offset)
 {
@@ -64,7 +64,8 @@ static Result read_index(CacheFile *cache, Error *error)
     if (memcmp(trailer.magic, CACHE_TRAILER, sizeof trailer.magic) != 0) return RESULT_OK;
     errno = 0;
     Result result = read_part(cache, le64toh(trailer.at), "INDX", &index, &end, error);
-    // A damaged index is none; one that cannot be read says nothing about the cache.
+    // A damaged index counts as a missing one. If it cannot be read at all (errno), that is an
+    // error: the cache itself may be whole.
     if (result != RESULT_OK) return result == RESULT_FAILED || errno ? result : RESULT_OK;
     bool good = true;
     for (size_t i = 0; i < index.size / sizeof(uint64_t) && good; ++i) {
@@ -107,26 +108,27 @@ Result cache_file_matches(const char *path, bool *matches, Error *error)
     char magic[sizeof CACHE_MAGIC - 1];
     struct stat status;
     *matches = false;
-    // What a pipe has given is gone.
+    // A pipe is not opened: bytes that are read from it here would be lost for the actual reader.
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return RESULT_OK;
     FILE *stream = fopen(path, "rb");
     *matches = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
                memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
     int reason = !stream || ferror(stream) ? errno : 0;
     if (stream) fclose(stream);
-    // A folder, and a name that is no file, are for others to refuse.
+    // Folders and missing files are refused by whoever opens the path later, with a better message.
     if (!reason || reason == EISDIR || reason == ENOENT) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
 }
 
-// Whether the file ends within the chunk at *at or before it; *at then is where the chunk ends.
+// Whether the file ends before or inside the chunk at *at. Moves *at to the end of the chunk.
 static bool ends_within(ChunkFile *file, uint64_t *at)
 {
     Chunk chunk = {.size = 0};
     if (file->size < *at + CHUNK_HEADER_BYTES) return true;
     Result result = chunk_find(file, *at, &chunk, NULL);
     *at += CHUNK_HEADER_BYTES + chunk.size;
-    return result != RESULT_OK && chunk.size > 0; // without a size it is damaged, not cut off
+    return result != RESULT_OK &&
+           chunk.size > 0; // without a valid size the chunk is damaged, not cut off
 }
 
 bool cache_file_is_stub(const char *path)
@@ -168,7 +170,8 @@ void cache_file_close(CacheFile *cache)
     *cache = (CacheFile){0};
 }
 
-// What follows the file's name in a message about it.
+// The message `why` without the path at its beginning, to be put behind another mention of the
+// path.
 static const char *without_path(const CacheFile *cache, const Error *why)
 {
     char path[sizeof why->text];
@@ -266,7 +269,7 @@ static Result fail_to_write(const CacheWriter *writer, int reason, Error *error)
     return error_set(error, RESULT_FAILED, "%s: cannot write: %s", writer->path, strerror(reason));
 }
 
-// Flushes; the error gives the reason.
+// Flushes the stream. The error names the first failure's reason.
 static Result flush(CacheWriter *writer, Error *error)
 {
     errno = 0;
@@ -274,7 +277,7 @@ static Result flush(CacheWriter *writer, Error *error)
     return fail_to_write(writer, writer->reason ? writer->reason : errno ? errno : EIO, error);
 }
 
-// Only an empty file and a cache may be written over.
+// Overwrites only empty files and caches, so that a wrong path does not destroy another file.
 static Result check_kind(const CacheWriter *writer, int descriptor, Error *error)
 {
     char magic[sizeof CACHE_MAGIC - 1];
@@ -296,7 +299,8 @@ static Result make_frame_room(CacheWriter *writer, uint64_t count, Error *error)
                      (unsigned long long)count);
 }
 
-// Memory of large frames is given back until the next: the renderer needs it meanwhile.
+// Frees the buffers of large frames after each frame, because the renderer needs the memory before
+// the next one.
 static void release_frame_room(CacheWriter *writer, uint64_t count)
 {
     if (count * sizeof *writer->positions <= KEPT_BYTES) return;
@@ -338,7 +342,7 @@ static void append(CacheWriter *writer, const char *tag, uint32_t number, const 
 {
     errno = 0;
     chunk_write(writer->stream, tag, number, payload, size);
-    // The stream keeps that a write has failed, but not why.
+    // The stream remembers that a write has failed, but not why.
     if (ferror(writer->stream) && !writer->reason) writer->reason = errno;
     writer->at += CHUNK_HEADER_BYTES + size;
 }

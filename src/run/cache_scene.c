@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- Who simulated.
+// --- The program and driver that simulated.
 
 static const char MAKER[] = "made_by";
 
@@ -34,11 +34,11 @@ char *cache_scene_maker(const Bytes *text)
 
 // --- Values.
 
-// Parameters of the groups below that do not change the guides' motion.
+// Parameters in the groups below that do not change the motion of guides.
 static const char *const HARMLESS[] = {"frames",    "followers",      "follow", "follower_radius",
                                        "sdf_cache", "tip_separation", "clump"};
 
-// Keys beside the parameters that are for drawing only.
+// Keys that are not parameters and only concern drawing.
 static const char *const DRAWN[] = {"camera", "lights", "file"};
 
 static bool moves_hair(const ParamInfo *info)
@@ -49,7 +49,7 @@ static bool moves_hair(const ParamInfo *info)
            info->group == GROUP_COLLISION;
 }
 
-// `object`: a scene or a section.
+// Removes all values that do not move hair. `object`: a scene or a section.
 static void keep_what_moves(json_t *object)
 {
     const char *algo = json_string_value(json_object_get(object, "algo"));
@@ -59,7 +59,8 @@ static void keep_what_moves(json_t *object)
     for (size_t i = 0; i < sizeof DRAWN / sizeof *DRAWN; ++i) json_object_del(object, DRAWN[i]);
 }
 
-// The same for a scene and its sections. Without a mesh nothing collides with it.
+// Removes from a scene and its sections what does not move hair. Without --collide-mesh the mesh
+// does not, either.
 static void keep_values(json_t *scene)
 {
     const json_t *sections = json_object_get(scene, "sections");
@@ -70,7 +71,7 @@ static void keep_values(json_t *scene)
         keep_what_moves(json_array_get(sections, i));
 }
 
-// What of a mesh that deforms moves hair.
+// The properties of a deforming mesh that the motion of hair depends on.
 static json_t *describe_body(const Simulation *simulation)
 {
     const MeshSequence *sequence = &simulation->scene->body->sequence;
@@ -96,10 +97,10 @@ Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *er
     return RESULT_OK;
 }
 
-// Where two values differ: "sections[1].style".
+// The place where two values differ, such as "sections[1].style".
 typedef struct Difference {
     char place[200];
-    const json_t *a, *b; // either may be NULL: there is none
+    const json_t *a, *b; // NULL if the value is missing on that side
 } Difference;
 
 static bool find_difference(Difference *difference, const char *place, const json_t *a,
@@ -117,7 +118,7 @@ static bool find_difference(Difference *difference, const char *place, const jso
                 return true;
         }
     if (!json_is_object(a) || !json_is_object(b)) return true;
-    for (int turn = 0; turn < 2; ++turn) { // the keys of a, then those that only b has
+    for (int turn = 0; turn < 2; ++turn) { // first the keys of a, then the keys that only b has
         const char *key;
         json_t *value;
         json_object_foreach((json_t *)(turn ? b : a), key, value)
@@ -155,10 +156,10 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
     if (!was && json_memory_short())
         return error_set(error, RESULT_FAILED, "%s: no memory for its scene", path);
     if (!was) return error_set(error, RESULT_BAD_INPUT, "%s: its scene is no JSON object", path);
-    keep_values(was); // of earlier versions, which wrote other solvers' parameters, too
+    keep_values(was); // earlier versions also wrote the parameters of other solvers
     Result result = cache_scene_describe(&now, simulation, error);
     if (result == RESULT_OK) {
-        // Read back, so that numbers are of the same kinds on both sides.
+        // Parse the text again, so that both sides have the same JSON types for numbers.
         json_t *is = json_read(now.data, now.size, 0, NULL);
         Difference difference;
         json_object_del(was, MAKER);
@@ -182,7 +183,7 @@ static void put_u32(FILE *stream, uint32_t value)
     fwrite(&value, sizeof value, 1, stream);
 }
 
-// Of counts and positions.
+// The CRC-32 of vertex counts and positions.
 static uint32_t checksum(const Strands *strands)
 {
     uint32_t crc = libdeflate_crc32(0, strands->first,
@@ -191,7 +192,8 @@ static uint32_t checksum(const Strands *strands)
                             (size_t)strands->vertex_count * sizeof *strands->position);
 }
 
-// Batches of equal vertex counts are one run, however many buffers a driver needs for them.
+// Writes batches of equal vertex counts as one run, so the file does not depend on how many buffers
+// a driver needs for them.
 static void put_runs(FILE *stream, const Hair *hair)
 {
     uint32_t runs = 0;
@@ -217,7 +219,7 @@ static void put_section(FILE *stream, const Hair *hair, const Strands *strands)
             put_u32(stream, hair->batches[i].strand[s]);
 }
 
-// `ends`, unless NULL: how many bytes there are up to and with each section.
+// `ends`, if not NULL: the number of bytes up to the end of each section.
 static Result describe_hair(Bytes *bytes, size_t *ends, const Simulation *simulation,
                             const Strands *strands, Error *error)
 {

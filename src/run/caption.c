@@ -13,7 +13,8 @@ static const char *const WORDS[WORD_COUNT] = {"frame", "time", "file", "solver"}
 // Lines of stb_easy_font are 12 units high.
 enum { LINE_UNITS = 12, QUADS_MAX = 12 * CAPTION_BYTES };
 
-// The word at the beginning of `text`; WORD_COUNT if unknown. `length`: up to the comma.
+// The word at the beginning of `text`; WORD_COUNT if it is unknown. `length`: its length, up to the
+// next comma.
 static Word find_word(const char *text, size_t *length)
 {
     *length = strcspn(text, ",");
@@ -49,7 +50,7 @@ static const char *name_of(const Section *section, Word word)
     return slash ? slash + 1 : section->file;
 }
 
-// Of all sections, but nothing twice in a row.
+// Appends the names of all sections; equal neighbours are written once.
 static void append_names(char text[CAPTION_BYTES], const Scene *scene, Word word)
 {
     for (uint32_t i = 0; i < scene->section_count; ++i) {
@@ -79,7 +80,8 @@ void caption_write(char text[CAPTION_BYTES], const Scene *scene, int frame)
         if (*c < ' ' || *c > '~') *c = '?';
 }
 
-// Pixels from (x, y) on, `wide` and `high` of them, of one grey from 0 to 1, opaque.
+// Fills a rectangle of `wide` x `high` pixels at (x, y): opaque, black if `grey` is 0, otherwise
+// white.
 static void fill(Image *image, int x, int y, int wide, int high, int grey)
 {
     int right = x + wide < image->width ? x + wide : image->width;
@@ -100,7 +102,7 @@ void caption_draw(Image *image, const char *text)
         int grow, grey;
     } LAYERS[] = {{1, 0}, {0, 1}};
     char line[CAPTION_BYTES];
-    float quads[QUADS_MAX][4][4]; // of each corner x, y, z, color
+    float quads[QUADS_MAX][4][4]; // x, y, z, color of each corner
     int unit = image->height / (20 * LINE_UNITS) > 1 ? image->height / (20 * LINE_UNITS) : 1;
     int left = 4 * unit, top = image->height - (LINE_UNITS + 2) * unit;
     snprintf(line, sizeof line, "%s", text);

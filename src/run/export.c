@@ -32,7 +32,8 @@ static void set_colors(float (*color)[4], const Strands *strands, const SectionP
         memcpy(color[v], paint->color ? paint->color[v] : own, sizeof own);
 }
 
-// From a value each vertex to one each strand, where vertices do not differ, or to just one.
+// Reduces colours by vertex to one colour for each strand if they do not vary along strands, or to
+// one for all strands.
 static CurvesRate simplify(float (*color)[4], const Strands *all)
 {
     bool constant = true, uniform = true;
@@ -100,7 +101,7 @@ static bool is_npz(const char *text)
     return suffix && strcasecmp(suffix, ".npz") == 0;
 }
 
-// Where `frame_count` frames of one name would overwrite each other.
+// Refuses a name without a number if several frames would overwrite each other.
 static Result check_name(const Target *target, const char *text, int frame_count, Error *error)
 {
     if (target->kind != TARGET_STILL || frame_count == 1 || is_npz(text)) return RESULT_OK;
@@ -109,14 +110,14 @@ static Result check_name(const Target *target, const char *text, int frame_count
                      text, strrchr(text, '.'));
 }
 
-// The options of a file for frames first, first + every, ...
+// Sets the options of a file for the frames first, first + every, ...
 static Result describe(Exporter *exporter, const Strands *sections, int frame_count, Error *error)
 {
     const Scene *scene = exporter->simulation->scene;
     const RunParams *run = &scene->run;
     if (frames_file_has_look(exporter->kind))
         TRY(create_look(&exporter->look, scene, sections, &exporter->strands, error));
-    // .npz has no numbers of frames: they are one step apart.
+    // .npz stores no frame numbers: its frames are one step apart.
     bool npz = exporter->kind == FORMAT_NPZ,
          animated = npz ? exporter->target.kind == TARGET_STILL && frame_count > 1
                         : exporter->target.kind == TARGET_VIDEO;
@@ -131,7 +132,7 @@ static Result describe(Exporter *exporter, const Strands *sections, int frame_co
                             &exporter->strands, &exporter->options, error);
 }
 
-// What some or all sections have and the files will not.
+// Finds features of the hair that some or all sections have and the file format cannot store.
 static void find_lost(Exporter *exporter, const Strands *sections, uint32_t count)
 {
     uint32_t features = 0;
@@ -140,8 +141,8 @@ static void find_lost(Exporter *exporter, const Strands *sections, uint32_t coun
         features & ~(strands_features(&exporter->strands) & FORMAT_TABLE[exporter->kind]->features);
 }
 
-// A section's guides and, behind them in the order of their batches, its followers, which have
-// their guides' looks.
+// Appends a section's guides, then its followers in the order of their batches. A follower has the
+// look of its guide.
 static Result add_followers(Strands *all, const Strands *guides, const Hair *followers,
                             Error *error)
 {
@@ -213,9 +214,9 @@ void exporter_destroy(Exporter *exporter)
     *exporter = (Exporter){0};
 }
 
-// ---
+// --- Frames.
 
-// From the order of the batches to that of the file.
+// Reorders positions from the order of batches to the order of the file.
 static void put_section(Strands *strands, uint32_t first_strand, const Hair *hair,
                         const float (*positions)[3])
 {
@@ -229,7 +230,7 @@ static void put_section(Strands *strands, uint32_t first_strand, const Hair *hai
     }
 }
 
-// Their order in the file is that of their batches.
+// Reads the followers' positions. In the file they have the order of their batches.
 static Result read_followers(Exporter *exporter, uint32_t section, uint32_t *first_strand,
                              Error *error)
 {

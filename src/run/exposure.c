@@ -9,13 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 256 }; // px of the meter's image, at most
+enum { SIDE = 256 }; // px: longer side of the meter's image, at most
 
-// What the meter draws: the light, and what of it is hair.
+// The meter draws two images: the lit scene, and the coverage of hair, which weights the first.
 enum { LIGHT, HAIR, DRAWINGS };
 
 typedef struct Meter {
-    Scene scene[DRAWINGS]; // the first owns the sections of both; all else is borrowed
+    Scene scene[DRAWINGS]; // scene[LIGHT] owns the sections of both; everything else is borrowed
     GpuTimer timer;
     Simulation simulation;
     Image image[DRAWINGS];
@@ -26,8 +26,8 @@ bool exposure_is_wanted(const RunParams *run, ImageKind kind)
     return run->exposure.automatic && run->aov == AOV_NONE && kind != IMAGE_FLOAT;
 }
 
-// A grey card in the hair's place: nothing that makes one hair's colour another's. The section
-// borrows all but its tracks.
+// Gives a section's hair the colour of a grey card, without anything that would make its colour
+// depend on the groom. The section borrows everything but its tracks.
 static Result make_grey(Section *grey, const Section *section, Error *error)
 {
     static char none[] = "";
@@ -64,8 +64,9 @@ static void destroy_grey(Scene *small)
     free(small->sections);
 }
 
-// The scene as the meter draws it: small, before nothing, light as it is, by the one rasteriser
-// that sorts everything, so that all have the same exposure; hair stays as it is put.
+// The scene that the meter draws: small, on black, without tone curve. It is always drawn by
+// `blocks`, so that the exposure does not depend on --raster. "put" makes the simulation show given
+// positions.
 static Scene meter_scene(const Scene *scene, Aov aov)
 {
     static char hair[] = "put";
@@ -103,7 +104,7 @@ static void carry(float (*positions)[3], size_t count, const HeadPose *head)
     }
 }
 
-// Puts the hair where the head has it at time 0.
+// Moves the hair with the head to its pose at time 0.
 static Result put_hair(Simulation *simulation, Error *error)
 {
     const HeadPose head = head_at(simulation->scene, 0);

@@ -55,7 +55,8 @@ const size_t FINGERPRINT_EXEMPT_COUNT = sizeof FINGERPRINT_EXEMPT / sizeof *FING
 
 const char *const FINGERPRINT_ORIGIN[FINGERPRINT_ORIGIN_COUNT] = {"Software", "Renderer", "Driver"};
 
-// --- The hash: FNV-1a of 64 bits (Fowler, Noll, Vo), of arrays their size and CRC-32.
+// --- The hash: 64-bit FNV-1a (Fowler, Noll, Vo) of all values. For arrays it takes their size and
+// CRC-32.
 
 static const uint64_t FNV_START = 0xcbf29ce484222325, FNV_PRIME = 0x100000001b3;
 
@@ -76,20 +77,20 @@ static uint64_t add_text(uint64_t hash, const char *text)
     return add(hash, text, strlen(text) + 1);
 }
 
-// NULL, which an array that is not there is, counts as such.
+// A missing array (NULL) hashes differently from an empty array.
 static uint64_t add_array(uint64_t hash, const void *data, size_t size)
 {
     hash = add_number(hash, data ? size : UINT64_MAX);
     return data ? add_number(hash, libdeflate_crc32(0, data, size)) : hash;
 }
 
-// --- What is hashed.
+// --- The hashed values.
 
 static void remove_exempt(json_t *object)
 {
     for (size_t i = 0; i < FINGERPRINT_EXEMPT_COUNT; ++i)
         json_object_del(object, FINGERPRINT_EXEMPT[i].name);
-    json_object_del(object, "file"); // its content counts
+    json_object_del(object, "file"); // the content of the file is hashed, not its name
 }
 
 static Result add_values(uint64_t *hash, const Scene *scene, Error *error)
@@ -154,7 +155,7 @@ static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets
     return RESULT_OK;
 }
 
-// --- Who draws. A CPU driver's images depend on the processor as well.
+// --- The program and device that draw. Images of CPU drivers depend on the processor, too.
 
 static Result describe_origin(ImageTexts *texts, const Gpu *gpu, Error *error)
 {
@@ -164,7 +165,7 @@ static Result describe_origin(ImageTexts *texts, const Gpu *gpu, Error *error)
     return gpu->software ? image_texts_set(texts, "CPU", gpu->processor, error) : RESULT_OK;
 }
 
-// ---
+// --- The fingerprint.
 
 Result fingerprint_create(Fingerprint *fingerprint, const Scene *scene, const Assets *assets,
                           const Framing *framing, float exposure, const Gpu *gpu, const char *maker,
@@ -211,7 +212,8 @@ static uint64_t add_light(uint64_t hash, const Light *light)
 {
     hash = add_number(hash, (uint64_t)light->kind);
     hash = add(hash, light->direction, sizeof light->direction);
-    return add(hash, light->position, sizeof light->position); // the rest is among the values
+    return add(hash, light->position,
+               sizeof light->position); // the other members are hashed with the scene's values
 }
 
 void fingerprint_of_image(char text[FINGERPRINT_BYTES], const Fingerprint *fingerprint, int frame)

@@ -13,11 +13,11 @@
 #include <time.h>
 #include <unistd.h>
 
-// How much work a crash may cost. Saving the state takes some 50 ms for 10,000 strands of 32
+// A crash may cost this much work. Saving the state takes about 50 ms for 10,000 strands of 32
 // vertices.
 static const double SAVE_EVERY_MS = 5000;
 
-// --- The state of an unfinished simulation in a file, so that another run continues it.
+// --- The state of an unfinished simulation, in a file from which another run can continue.
 
 static const char STATE_MAGIC[] = "TRXSTATE";
 
@@ -33,7 +33,7 @@ static Result write_chunks(const char *path, int frame, const Bytes *scene, cons
     return outfile_commit(&file, error);
 }
 
-// Writes the state after the current frame; the file appears complete or not at all.
+// Writes the state after the current frame. The file appears complete or not at all.
 static Result write_state(const char *path, Simulation *simulation, const Strands *strands,
                           Error *error)
 {
@@ -48,7 +48,7 @@ static Result write_state(const char *path, Simulation *simulation, const Strand
     return result;
 }
 
-// The chunk at *at, which must have this tag; *at moves behind it.
+// Reads the chunk at *at, which must have this tag, and moves *at behind it.
 static Result read_part(ChunkFile *file, uint64_t *at, const char *tag, Chunk *chunk,
                         Bytes *payload, Error *error)
 {
@@ -61,8 +61,9 @@ static Result read_part(ChunkFile *file, uint64_t *at, const char *tag, Chunk *c
     return result;
 }
 
-// Reads a state of this very simulation for simulation_state_restore, and of which frame it is.
-// RESULT_BAD_INPUT if there is none or it is of another one. Free with bytes_destroy.
+// Reads a state for simulation_state_restore, and the frame after which it was saved.
+// RESULT_BAD_INPUT if there is no state or it belongs to another simulation. Free with
+// bytes_destroy.
 static Result read_state(Bytes *state, int *frame, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error)
 {
@@ -88,15 +89,15 @@ static Result read_state(Bytes *state, int *frame, const char *path, const Simul
 
 static Result begin_cache(FrameSource *source, const char *path, Error *error)
 {
-    Result result = outfile_remove(source->state_path, error); // that of an older cache
+    Result result = outfile_remove(source->state_path, error); // remove the state of an older cache
     THEN(result,
          cache_writer_open(&source->writer, path, source->simulation, source->strands, error));
     source->writes = result == RESULT_OK;
     return result;
 }
 
-// Finds the state after a whole frame of the cache. If there is none that fits, the simulation
-// starts again, with the same result.
+// Looks for a state that was saved after one of the cache's frames. Without one the simulation
+// starts again from frame 0, with the same result.
 static bool find_state(FrameSource *source, FILE *messages, Error *error)
 {
     int frame = 0;
@@ -114,7 +115,7 @@ static bool find_state(FrameSource *source, FILE *messages, Error *error)
     return false;
 }
 
-// The run was stopped when all frames were there, but not the index behind them.
+// Writes the index of a cache whose run was stopped after the last frame but before the index.
 static Result complete_cache(FrameSource *source, Error *error)
 {
     const CacheFile *cache = &source->reader.cache;
@@ -123,7 +124,7 @@ static Result complete_cache(FrameSource *source, Error *error)
     return cache_writer_finish(&source->writer, error);
 }
 
-// Of a cache that has all frames of the run: nothing is left to go on from.
+// Removes the state file once the cache has all frames of the run.
 static Result drop_state(const FrameSource *source, Error *error)
 {
     return outfile_remove(source->state_path, error);
@@ -187,7 +188,7 @@ Result frame_source_open(FrameSource *source, Simulation *simulation, const Stra
     return begin_cache(source, run->cache, error);
 }
 
-// --- Going.
+// --- Frames.
 
 bool frame_source_needs(const FrameSource *source, int frame)
 {
@@ -201,8 +202,7 @@ static Result settle(Simulation *simulation, Error *error)
     return error_set(error, RESULT_INTERRUPTED, "interrupted before the first frame");
 }
 
-// The next frame of the simulation; of a resumed one, the first comes after the state that was
-// saved.
+// Simulates the next frame. After a resume, the next frame is the one after the saved state.
 static Result simulate(FrameSource *source, int frame, Error *error)
 {
     if (frame == 0) return settle(source->simulation, error);
@@ -220,7 +220,8 @@ static Result record(FrameSource *source, Error *error)
     Result result = cache_writer_add(&source->writer, source->simulation, error);
     if (result != RESULT_OK || clock_ms() - source->written_ms < SAVE_EVERY_MS) return result;
     result = write_state(source->state_path, source->simulation, source->strands, error);
-    simulation_pose(source->simulation); // as drawn: saving shows the last step's positions
+    simulation_pose(
+        source->simulation); // saving shows the last step's positions; go back to the drawn ones
     source->written_ms = clock_ms();
     return result;
 }
@@ -235,7 +236,7 @@ Result frame_source_go(FrameSource *source, int frame, bool drawn, Error *error)
     return source->writes ? record(source, error) : RESULT_OK;
 }
 
-// --- Ending.
+// --- The end.
 
 Result frame_source_finish(FrameSource *source, Error *error)
 {

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Paint holds the section's colour as it is at the start, beside what differs along the strands.
+// Refuses a colour that changes over time if colours vary along the strands: in that case `paint`
+// has the section's colour of the start baked into each vertex.
 static Result refuse_changes(const Section *section, const Strands *strands, const Paint *paint,
                              Error *error)
 {
@@ -66,7 +67,8 @@ static Result create_items(Images *images, Error *error)
     return RESULT_OK;
 }
 
-// --aov depth: floats hold metres; PNG files map the scene's nearest to farthest distance.
+// For --aov depth, floats hold metres; PNG files map the range from the scene's nearest to its
+// farthest point to white and black.
 static void set_depth_range(const Images *images, RendererOptions *options)
 {
     if (options->aov == AOV_DEPTH && options->kind != IMAGE_FLOAT)
@@ -87,7 +89,7 @@ static RendererOptions describe_images(const Images *images, ImageKind kind)
     return options;
 }
 
-// Tells skin how much of the sky it sees.
+// Computes how much of the sky each vertex of the mesh sees, for the shading of skin.
 static Result open_sky(Images *images, Error *error)
 {
     const Assets *assets = images->assets;
@@ -186,7 +188,7 @@ static int count_layers(const Images *images)
     return images->layers ? EXR_LAYERS : 0;
 }
 
-// Shows the mesh as it is at the simulation's time.
+// Moves the mesh to its pose at the simulation's time.
 static void move_mesh(Images *images)
 {
     Simulation *simulation = images->simulation;
@@ -203,7 +205,7 @@ static void move_mesh(Images *images)
         renderer_move_mesh(&images->layers[l], &images->body);
 }
 
-// Radii that change over time; all else of a look is read from the parameters.
+// Updates radii that change over time. Everything else of a look is read from the parameters.
 static void take_radii(Images *images)
 {
     for (uint32_t i = 0, item = 0; i < images->scene->section_count; ++i) {

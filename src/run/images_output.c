@@ -5,7 +5,7 @@
 #include <cglm/mat4.h>
 #include <string.h>
 
-// Whether EXR files are written that have layers: an image by --aov and a sheet have none.
+// Whether EXR files with layers are written. Images of --aov and contact sheets have no layers.
 static bool has_layers(const RunParams *run, const Target *target)
 {
     return target->format == TARGET_EXR && run->exr_layers && run->aov == AOV_NONE &&
@@ -46,7 +46,7 @@ Result images_output_create(Output **output, const Images *images, const Fingerp
 
 void images_output_matrices(FrameExtra *extra, const View *view)
 {
-    // From clip space: x of -w to w becomes 0 to w, y the other way round.
+    // Maps clip space to the image: x from [-w, w] to [0, w], y likewise but upside down.
     mat4 halve = {{0.5f, 0, 0, 0}, {0, -0.5f, 0, 0}, {0, 0, 1, 0}, {0.5f, 0.5f, 0, 1}};
     mat4 from_world = {0}, projection = {0}, whole;
     memcpy(from_world, view->view, sizeof from_world);

@@ -11,13 +11,13 @@
 
 #include <string.h>
 
-// --check: words that are looked up first, then the hair files.
+// Runs --check: first the names (caption words, solvers), then the hair files.
 static Result check(const Scene *scene, Error *error)
 {
     TRY(caption_check(scene->run.caption, error));
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(solver_check(&scene->sections[i].params, error));
-    error->text[0] = 0; // the report says it all
+    error->text[0] = 0; // the report on stdout names all errors
     return assets_check(scene, stdout);
 }
 
@@ -35,7 +35,7 @@ static Result answer(Run *run, Error *error)
     return run_go(run, error);
 }
 
-// `--algo list` needs no hair file, so it is looked for before anything else.
+// `--algo list` needs no hair file, so it is handled before the command line is parsed.
 static bool wants_solver_list(int argc, char **argv)
 {
     for (int i = 1; i < argc; ++i)

@@ -15,22 +15,22 @@
 #include <string.h>
 #include <time.h>
 
-// One image is drawn, one is on its way back from the GPU or waits, one is encoded: where there is
-// more to encode than to draw, another one is for each worker more.
+// One image is being drawn, one is read back from the GPU or waits, one is encoded. If encoding is
+// slower than drawing, each further worker gets another image.
 #define QUEUE_LENGTH_DEFAULT 3
-// How soon a wait sees an interrupt.
+// A wait checks for interrupts this often.
 #define WAIT_SLICE_NS 20000000
 
 typedef enum SlotState { SLOT_FREE, SLOT_LENT, SLOT_QUEUED } SlotState;
 
 typedef struct Slot {
-    Image image; // first, so that an image lent out leads back to its slot
+    Image image; // must be first: a pointer to the image is also one to its slot
     FrameExtra extra;
     SlotState state;
     int frame;
 } Slot;
 
-// A thread that encodes.
+// An encoding thread.
 typedef struct Worker {
     Output *output;
     pthread_t thread;
@@ -39,27 +39,27 @@ typedef struct Worker {
 
 struct Output {
     Target target;
-    SingleFile single; // the one worker's
-    ImageTexts texts;  // what every worker begins with
+    SingleFile single; // used if all frames go to one file; then there is one worker
+    ImageTexts texts;  // each worker starts with a copy
     bool has_texts;
-    OutputOptions options; // of numbers; what it points to may be gone
+    OutputOptions options; // only its numbers are valid; its pointers may dangle
     Slot *slots;           // [slot_room]
-    Slot **queue;          // ring of `slot_room`, so there is always room
+    Slot **queue;          // ring of slot_room entries: it can hold all slots
     int slot_count, slot_room;
     char *description;
 
     Worker workers[PARALLEL_MOST];
     int worker_count, most_workers;
-    pthread_mutex_t mutex; // guards all that follows, and the slots' states
+    pthread_mutex_t mutex; // guards the members below and the slots' states
     pthread_cond_t changed;
     int queue_first, queued;
-    uint64_t taken, written; // frames: the files appear in the order in which frames came
-    int at_work;             // workers that have not ended
+    uint64_t taken, written; // numbers of frames; files appear in the order of frames
+    int at_work;             // workers that are still running
     int submitted, frame_first, frame_last;
     bool closing;  // no more frames will come
-    bool aborting; // the frames that wait are not wanted
-    bool ended;    // the workers have done all they will do
-    Result result; // the first failure of a worker and what it says
+    bool aborting; // discard the frames that wait
+    bool ended;    // all workers have finished
+    Result result; // the first failure of a worker, with its message
     Error failure;
     OutputCounters counters;
 };
@@ -67,7 +67,7 @@ struct Output {
 // A frame that a worker has taken.
 typedef struct Taken {
     FrameFile file;
-    uint64_t turn; // how many were taken before
+    uint64_t turn; // number of frames that were taken before
     char scene[FINGERPRINT_BYTES];
     Result result; // of encoding and writing
     Error error;
@@ -92,7 +92,7 @@ static void encode(Worker *worker, const Slot *slot, Taken *taken)
                                            &slot->extra, &taken->error);
 }
 
-// Keeps the first failure. Called with the mutex held.
+// Keeps the first failure. Call with the mutex held.
 static void fail(Output *output, Result result, const Error *why)
 {
     if (output->result != RESULT_OK) return;
@@ -105,7 +105,7 @@ static bool goes_on(const Output *output)
     return output->result == RESULT_OK && !output->aborting;
 }
 
-// Gives the frame its file, if it has one of its own.
+// Renames the frame's temporary file to its name, unless all frames go to one file.
 static Result commit(Output *output, Taken *taken)
 {
     if (taken->result != RESULT_OK || single_file_is_used(&output->single)) return taken->result;
@@ -113,8 +113,9 @@ static Result commit(Output *output, Taken *taken)
                              &taken->error);
 }
 
-// Once the files of all earlier frames have their names; none if one of them has failed. Called
-// with the mutex held, which is let go meanwhile, as by the next functions.
+// Waits until the files of all earlier frames have their names, then commits this one. If an
+// earlier frame has failed, the file is discarded. Call with the mutex held; it is released while
+// waiting and writing. The same is true of the functions below.
 static void end_frame(Output *output, Taken *taken)
 {
     while (output->written != taken->turn && goes_on(output))
@@ -134,7 +135,7 @@ static void end_frame(Output *output, Taken *taken)
     frame_file_discard(&taken->file);
 }
 
-// Encodes the oldest frame that waits.
+// Encodes the oldest frame in the queue.
 static void encode_next(Worker *worker)
 {
     Output *output = worker->output;
@@ -154,7 +155,7 @@ static void encode_next(Worker *worker)
     end_frame(output, &taken);
 }
 
-// Completes the one file that all frames have gone to, if there is one.
+// Completes the file that holds all frames, if there is one.
 static void end_file(Worker *worker)
 {
     Output *output = worker->output;
@@ -193,7 +194,7 @@ static void *work(void *argument)
     return NULL;
 }
 
-// Waits for a change, but not for long. Called with the mutex held.
+// Waits for a change, at most for one slice. Call with the mutex held.
 static Result wait_changed(Output *output, Error *error)
 {
     if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
@@ -288,7 +289,7 @@ static Result create_slots(Output *output, const OutputOptions *options, Error *
     return result;
 }
 
-// Called with the mutex held, or before there are workers.
+// Call with the mutex held, or before there are workers.
 static Result start_worker(Output *output, Error *error)
 {
     Worker *worker = &output->workers[output->worker_count];
@@ -305,8 +306,8 @@ static Result start_worker(Output *output, Error *error)
                      strerror(reason));
 }
 
-// All images wait or are being encoded: another worker and an image for it, if that can be had.
-// Called with the mutex held.
+// Adds a worker and an image for it, because all images wait or are being encoded. If that fails,
+// the output goes on with the workers that it has. Call with the mutex held.
 static void grow(Output *output)
 {
     if (output->worker_count >= output->most_workers || output->slot_count >= output->slot_room)
@@ -454,7 +455,7 @@ static void stop_workers(Output *output)
     bool ended = output->ended;
     pthread_cond_broadcast(&output->changed);
     pthread_mutex_unlock(&output->mutex);
-    // The worker may be waiting for ffmpeg: its end wakes it.
+    // A worker may be waiting for ffmpeg: stopping ffmpeg wakes it.
     if (!ended) single_file_stop(&output->single);
     for (int i = 0; i < output->worker_count; i++) {
         pthread_join(output->workers[i].thread, NULL);

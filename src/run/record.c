@@ -22,7 +22,7 @@ static void write_line(char text[LINE_BYTES], int frame, const RecordLine *line)
     snprintf(text, LINE_BYTES, "%d %s %08" PRIx32, frame, line->fingerprint, line->checksum);
 }
 
-// Of a whole file.
+// The CRC-32 of a whole file.
 static Result find_checksum(uint32_t *checksum, const char *name, Error *error)
 {
     Bytes file;
@@ -51,7 +51,7 @@ Result record_add(const Target *target, int frame, const char *fingerprint, Erro
     return result;
 }
 
-// Takes a line that is as record_add writes it, and no other.
+// Parses a line exactly as record_add writes it; ignores any other line.
 static void take_line(Record *record, const char *text)
 {
     int frame;

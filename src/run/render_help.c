@@ -24,7 +24,7 @@ static const char *const NOTES[] = {
     "value. If an option is given twice, the last one counts. -- ends the options.",
     NULL};
 
-// What --help alone lists.
+// The options that --help lists without a topic.
 static const char *const BRIEF[] = {"mesh",   "fps",     "output",     "size",      "first",
                                     "cache",  "quiet",   "algo",       "style",     "followers",
                                     "frames", "wind",    "colliders",  "turntable", "color",
@@ -114,13 +114,13 @@ static const char *const EXAMPLES[] = {
     "tractrix-render scene.json --cache sim.cache",
     "tractrix-render scene.json --from-cache sim.cache --first 60 --last 119 -o frames/", NULL};
 
-// Not a list of options.
+// A topic of --help that is not a list of options.
 static const char *const SCHEMA_TOPIC[2] = {"schema", "JSON schema of scene files"};
 
-// Bounds from here on only keep numbers sane: help does not name them.
+// Limits of at least this size only exclude absurd numbers; the help does not show them.
 static const double WIDE = 1e6;
 
-// The values' range and unit, "" where there is nothing to say: "0 to 90 deg".
+// Writes the range and unit of a parameter, such as "0 to 90 deg"; "" if it has neither.
 static void write_range(const ParamInfo *info, char *text, size_t size)
 {
     static const char *const FORMS[] = {[PARAM_COLOR] = "name, #rrggbb or r,g,b",
@@ -142,7 +142,8 @@ static void write_range(const ParamInfo *info, char *text, size_t size)
         snprintf(text, size, "%s", info->unit);
 }
 
-// "* angle [0 to 90 deg; default 15]", without what there is not.
+// Writes the help text of a parameter, such as "* angle [0 to 90 deg; default 15]". Missing parts
+// are left out.
 static void write_text(const ParamInfo *info, char *text, size_t size)
 {
     char range[100];
@@ -158,7 +159,7 @@ static void write_text(const ParamInfo *info, char *text, size_t size)
              any ? "]" : "");
 }
 
-// "Simulation: chain, hybrid"
+// Writes the heading of a group of options, such as "Simulation: chain, hybrid".
 static void write_heading(const ParamInfo *info, char *text, size_t size)
 {
     size_t length =
@@ -170,7 +171,7 @@ static void write_heading(const ParamInfo *info, char *text, size_t size)
     }
 }
 
-// Whether a list with bars between its words has this one.
+// Whether a word occurs in a list that is separated by bars.
 static bool lists_word(const char *list, const char *word)
 {
     size_t length = strlen(word);
@@ -179,7 +180,8 @@ static bool lists_word(const char *list, const char *word)
     return false;
 }
 
-// The solvers, or all their variants (those of two solvers once), with bars between them.
+// Writes the names of the solvers, or of all their variants, separated by bars. A variant that two
+// solvers have is listed once.
 static void write_solvers(char *text, size_t size, bool variants)
 {
     size_t length = 0;
@@ -201,7 +203,7 @@ static bool is_of(const char *topic, size_t option)
     return *info->owner && params_owned_by(info, topic);
 }
 
-// Strings of the rows that are made here.
+// The generated strings that help rows point to.
 typedef struct Texts {
     char help[SCENE_PARAMS][TEXT_SIZE], heading[SCENE_PARAMS][80], solvers[2][TEXT_SIZE];
     char colors_text[COLOR_NAME_COUNT][32];
@@ -209,7 +211,7 @@ typedef struct Texts {
     const char *headings[SCENE_PARAMS], *topics[MOST_TOPICS][2], *colors[COLOR_NAME_COUNT + 1][3];
 } Texts;
 
-// What the name means, and of hair where that is not the same.
+// Writes the meaning of a colour name. If the name means another colour for hair, both are shown.
 static void write_color(const char *entry[3], char meaning[32], const ColorName *color)
 {
     snprintf(meaning, 32, color->css && color->hair ? "%s, of hair %s" : "%s",

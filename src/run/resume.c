@@ -13,12 +13,12 @@
 #include <string.h>
 #include <unistd.h>
 
-// What is looked for.
+// What a resumed run looks for.
 typedef struct Search {
     const RunParams *run;
     const Fingerprint *fingerprint;
-    Target images, hair;              // empty unless the run has such
-    Record image_record, hair_record; // of files that have no texts
+    Target images, hair;              // empty if the run does not write any
+    Record image_record, hair_record; // for formats without text chunks
     FramesDone *done;
 } Search;
 
@@ -111,7 +111,7 @@ static Result compare_texts(const Search *search, const ImageTexts *texts, int f
     return error_set(why, RESULT_FAILED, "%.300s: other parameters or other files", name);
 }
 
-// RESULT_OK: the file is there and is what would be written.
+// RESULT_OK if the file exists and has what this run would write.
 static Result compare_image(const Search *search, int frame, const char *name, Error *why)
 {
     Bytes file = {0};
@@ -134,7 +134,8 @@ static void note_stale(FramesDone *done, const Error *why)
     if (!done->stale++) done->why = *why;
 }
 
-// A hair file is not read: that it is what was written makes it whole.
+// Hair files are not decoded: the record has the file's checksum, so an unchanged file is a
+// complete one.
 static Result compare_hair(const Search *search, int frame, const char *name, Error *why)
 {
     char expected[FINGERPRINT_BYTES];
@@ -144,7 +145,7 @@ static Result compare_hair(const Search *search, int frame, const char *name, Er
     return error_set(why, RESULT_FAILED, "%.300s: no record of the scene that it shows", name);
 }
 
-// Whether the frame's file of this target is done; false also when memory is short.
+// Whether the frame's file of this target is done. False also if memory is short.
 static bool is_done(const Search *search, const Target *target, int frame)
 {
     Error why = {{0}};
@@ -162,7 +163,7 @@ static Result find_files(const Search *search, int last, Error *error)
 {
     const RunParams *run = search->run;
     FramesDone *done = search->done;
-    if (!*run->output && !*run->export) return RESULT_OK; // a cache alone knows itself
+    if (!*run->output && !*run->export) return RESULT_OK; // a cache knows which frames it has
     done->done = calloc((size_t)last + 1, sizeof *done->done);
     if (!done->done) return error_set(error, RESULT_FAILED, "no memory for %d frames", last);
     for (int frame = run->first; frame <= last; frame += run->every) {

@@ -89,7 +89,7 @@ static Result open_gpu(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// The name must be of a known kind, and with --part stand for a file per frame.
+// The name must have a known suffix. With --part it must name a file per frame.
 static Result check_target(const RunParams *run, const char *path,
                            Result (*parse)(Target *target, const char *text, Error *error),
                            Error *error)
@@ -117,7 +117,7 @@ static Result check_sheet(const RunParams *run, Error *error)
                      sheet[0], sheet[1]);
 }
 
-// Everything that can be checked before a file is opened.
+// Checks everything that can be checked before a file is opened.
 static Result check_values(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -132,8 +132,8 @@ static Result check_values(const Scene *scene, Error *error)
     return RESULT_OK;
 }
 
-// Refuses a file that is no cache, or has too few frames, before anything is set up. Whether it is
-// of this scene is checked once there is a simulation.
+// Refuses a file that is not a cache or has too few frames, before anything is set up. Whether the
+// cache belongs to this scene is checked later, because this needs the simulation.
 static Result check_cache(const RunParams *run, Error *error)
 {
     CacheFile cache;
@@ -144,8 +144,8 @@ static Result check_cache(const RunParams *run, Error *error)
     return result;
 }
 
-// What frames of this run say of themselves. A cache that another program or driver has made counts
-// as a file that is read.
+// Computes the fingerprint of the run's frames. If another program version or driver made the cache
+// that is drawn, the fingerprint includes that maker.
 static Result describe(Run *run, Error *error)
 {
     char *maker = NULL;
@@ -160,7 +160,7 @@ static Result describe(Run *run, Error *error)
     return result;
 }
 
-// Finds what an interrupted run has left.
+// Finds the finished frames of an interrupted run.
 static Result find_done(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -209,7 +209,7 @@ static void report_steps(const Simulation *simulation)
             (long long)schedule->settling);
 }
 
-// Fits the camera to the hair, unless the scene gives it.
+// Fits the camera to the hair, unless the scene sets the camera.
 static Result aim(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -231,7 +231,7 @@ static Result aim(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// Finds the exposure, unless the scene gives it, and reports it as a value for --exposure.
+// Finds the exposure, unless the scene sets it, and reports it as a value for --exposure.
 static Result expose(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -246,7 +246,7 @@ static Result expose(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// What is drawn beside the strands of a file that asks for nothing.
+// Reports sections whose file asks for no followers and which get some to fill gaps.
 static void report_filled(const Run *run)
 {
     for (uint32_t i = 0; i < run->scene.section_count; ++i) {
@@ -259,8 +259,8 @@ static void report_filled(const Run *run)
     }
 }
 
-// The driver's buffers have the strands now; only caches and exports look at the file's again.
-// 1,000,000 strands of 16 vertices: 256 MB.
+// Frees the strands in the CPU's memory once they are uploaded, for 1,000,000 strands of 16
+// vertices 256 MB. Caches and exports still need them.
 static void release_strands(Run *run)
 {
     if (run->exports || *run->scene.run.cache) return;
@@ -289,8 +289,8 @@ static Result open_images(Run *run, Error *error)
                                 sequence_count_drawn(params) - run->done.count, error);
 }
 
-// Files first: their errors are reported before a driver is started. The output's folder is made
-// last but before any work.
+// Reads files before the driver is started, so that errors in files are reported quickly. The
+// output folder is created last, just before the first frame.
 static Result prepare(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
@@ -369,7 +369,8 @@ static Result write_stats(Run *run, const Sequence *sequence, Error *error)
 Result run_go(Run *run, Error *error)
 {
     TRY(prepare(run, error));
-    if (getenv("TRACTRIX_GL_CALLS")) gl_count_start(); // not documented: a table at the end
+    if (getenv("TRACTRIX_GL_CALLS"))
+        gl_count_start(); // for developers: prints a table of calls at the end
     Sequence sequence = {
         .scene = &run->scene,
         .source = &run->source,

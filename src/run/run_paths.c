@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-// The parameters that name what is written; all other paths are read.
+// The parameters that name outputs; all other path parameters name inputs.
 static const char *const WRITTEN[] = {"output", "cache", "export", "stats"};
 enum { WRITTEN_COUNT = sizeof WRITTEN / sizeof *WRITTEN };
 
@@ -35,7 +35,8 @@ static Result check_allowance(const Scene *scene, Error *error)
                      "%.300s: allow_paths: expected it on the command line only", scene->file);
 }
 
-// The scene file if that, not the command line, names this output: it must stay in its own folder.
+// The scene file if it, not the command line, names this output. Such an output must stay in the
+// scene file's folder.
 static const char *find_home(const Scene *scene, const char *param)
 {
     const ParamInfo *info = params_find(param);
@@ -43,13 +44,14 @@ static const char *find_home(const Scene *scene, const char *param)
     return own && !scene->run.allow_paths ? scene->file : NULL;
 }
 
-// --- What a scene file may read: any file, but nothing that may never end.
+// --- What a scene file may read: any regular file, but no device or pipe, whose reading might
+// never end.
 
 static Result check_input(const Scene *scene, const char *path, Error *error)
 {
     struct stat status;
     if (!*path || stat(path, &status) != 0 || S_ISREG(status.st_mode) || S_ISDIR(status.st_mode))
-        return RESULT_OK; // what is missing or a folder is reported by its reader
+        return RESULT_OK; // the reader reports missing files and folders
     return error_set(error, RESULT_BAD_INPUT,
                      "%.300s: %.300s is a device or pipe: expected a plain file", scene->file,
                      path);
@@ -71,7 +73,7 @@ static Result check_inputs(const Scene *scene, Error *error)
     return RESULT_OK;
 }
 
-// --- All of them.
+// --- All paths of a run.
 
 typedef struct List {
     PathUse *uses;
@@ -93,7 +95,7 @@ static PathRole role_of(const ParamInfo *info)
     return strcmp(info->name, "stats") == 0 ? PATH_WRITTEN : PATH_TARGET;
 }
 
-// The rows of PARAM_TABLE that are paths of this scope.
+// Adds the parameters of this scope that are paths (rows of PARAM_TABLE).
 static void add_params(List *list, const Scene *scene, ParamScope scope, const void *params)
 {
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
@@ -107,7 +109,8 @@ static void add_params(List *list, const Scene *scene, ParamScope scope, const v
     }
 }
 
-// What is written beside numbered files that have no texts. NULL: nothing.
+// The path of the record file, which is written beside numbered files of formats without texts.
+// NULL if there is none.
 static char *find_record(const char *path,
                          Result (*parse)(Target *target, const char *text, Error *error))
 {
@@ -119,7 +122,7 @@ static char *find_record(const char *path,
     return record;
 }
 
-// The names in `list` last as long as the claims: to the end of the program.
+// The names in `list` must live as long as the claims, until the program ends.
 Result run_paths_claim(const Scene *scene, Error *error)
 {
     enum { RUN_PATHS = 16, SECTION_PATHS = 4 };
@@ -127,7 +130,7 @@ Result run_paths_claim(const Scene *scene, Error *error)
     size_t room = RUN_PATHS + (size_t)scene->section_count * SECTION_PATHS;
     TRY(check_allowance(scene, error));
     TRY(check_inputs(scene, error));
-    char *state = NULL; // what --cache writes beside the cache
+    char *state = NULL; // the state file that --cache writes beside the cache
     char *records[2] = {find_record(scene->run.output, target_parse),
                         find_record(scene->run.export, format_target)};
     free(list.names);

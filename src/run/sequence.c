@@ -16,14 +16,14 @@ int sequence_last_frame(const RunParams *run)
     return run->last < 0 ? run->frames - 1 : run->last;
 }
 
-// Frames that --first, --last and --every name.
+// The number of frames that --first, --last and --every select.
 static int count_named(const RunParams *run)
 {
     int last = sequence_last_frame(run);
     return last < run->first ? 0 : (last - run->first) / run->every + 1;
 }
 
-// 0: no contact sheet.
+// The number of tiles of the contact sheet; 0 without a contact sheet.
 static int count_tiles(const RunParams *run)
 {
     int64_t tiles = (int64_t)run->contact_sheet[0] * run->contact_sheet[1];
@@ -31,9 +31,9 @@ static int count_tiles(const RunParams *run)
     return tiles < count_named(run) ? (int)tiles : count_named(run);
 }
 
-// A contact sheet of T tiles shows the frames at places floor(i n / T) of n, i = 0 .. T - 1: evenly
-// spaced and, of a full turn, without repeating its start at the end. Only the first i with i n / T
-// at or behind a place can lead there.
+// A contact sheet of T tiles shows the frames at places floor(i n / T) of n, i = 0 .. T - 1. They
+// are evenly spaced, and a full turn does not repeat its start at the end. For a given place, only
+// the first i with i n / T >= place can match.
 static bool is_on_sheet(const RunParams *run, int place)
 {
     int64_t named = count_named(run), tiles = count_tiles(run);
@@ -59,24 +59,24 @@ int sequence_count_drawn(const RunParams *run)
 
 // --- The loop.
 
-// The previous image, which is repeated if neither hair nor camera has moved. It is kept only where
-// that may happen: in the first frame and in frames that moved nothing.
+// The previous image, which is repeated if neither hair nor camera has moved. A copy is kept only
+// if a repeat is possible: in the first frame and in frames in which nothing moved.
 typedef struct Previous {
     bool any;
-    uint64_t changes; // of the simulation, when it was drawn
+    uint64_t changes; // simulation->changes when the image was drawn
     View view;
     Image image, layers[EXR_LAYERS];
 } Previous;
 
-// An image that is on its way back from the GPU while the next frame is simulated and drawn.
+// An image that is read back from the GPU while the next frame is simulated and drawn.
 typedef struct Pending {
-    Image *image; // NULL: none
+    Image *image; // NULL if there is none
     int frame, place;
     View view;
-    bool still; // the simulation had not moved since the image before
+    bool still; // nothing had moved since the image before
 } Pending;
 
-// What a run carries from frame to frame.
+// State that a run carries from frame to frame.
 typedef struct Carried {
     Previous previous;
     Pending pending;
@@ -88,7 +88,7 @@ static bool same_view(const View *a, const View *b)
            memcmp(a->projection, b->projection, sizeof a->projection) == 0;
 }
 
-// The first time it takes memory.
+// Copies an image; allocates `to` the first time.
 static Result copy(Image *to, const Image *from, Error *error)
 {
     if (!from->pixels) return RESULT_OK;
@@ -113,8 +113,8 @@ static Result remember(Previous *previous, const View *view, Image *image, Error
     return RESULT_OK;
 }
 
-// Returns memory of shader compilation before the first image is drawn: the peak is 10 MB lower on
-// a CPU driver.
+// Frees the memory of shader compilation before the first image is drawn, which lowers the peak by
+// 10 MB on a CPU driver.
 static void give_back_memory(void)
 {
     glReleaseShaderCompiler();
@@ -132,7 +132,7 @@ static Result hand_on(Sequence *sequence, int frame, Image *image, Error *error)
     return output_submit(sequence->output, frame, image, error);
 }
 
-// Hands on the image that is on its way, if there is one.
+// Finishes the image that is being read back, if there is one, and hands it to the output.
 static Result finish_pending(Sequence *sequence, Carried *carried, Error *error)
 {
     Pending pending = carried->pending;
@@ -144,7 +144,8 @@ static Result finish_pending(Sequence *sequence, Carried *carried, Error *error)
     return hand_on(sequence, pending.frame, pending.image, error);
 }
 
-// Whether the image is the previous one again, into which it is copied then.
+// Whether nothing has moved since the previous image. If so, the previous image is copied to
+// `image`.
 static Result repeat(Sequence *sequence, Carried *carried, const View *view, Image *image,
                      bool *still, bool *repeated, Error *error)
 {
@@ -162,8 +163,8 @@ static Result repeat(Sequence *sequence, Carried *carried, const View *view, Ima
     return copy_layers(output_extra(image)->layers, previous->layers, error);
 }
 
-// Begins an image, and takes the one before. With statistics each frame has its own times: nothing
-// is left for the next one.
+// Begins an image and finishes the one before. With statistics each frame is finished at once, so
+// that its times are its own.
 static Result draw(Sequence *sequence, Carried *carried, int frame, const View *view, Image *image,
                    Error *error)
 {
@@ -239,8 +240,7 @@ static Result run_frame(Sequence *sequence, Carried *carried, int frame, Error *
     return result;
 }
 
-// The frames to go through: neither those that nobody wants and that need not be simulated, nor
-// those after the last that is wanted, unless a cache wants them.
+// The last frame to simulate: the last frame that an output needs. A cache needs all frames.
 static int last_wanted(const Sequence *sequence)
 {
     int last = sequence_last_frame(&sequence->scene->run);
@@ -249,7 +249,8 @@ static int last_wanted(const Sequence *sequence)
     return last;
 }
 
-// Hands on what is still on its way, also if a later frame has failed or was interrupted.
+// Finishes the image that is still being read back, even if a later frame has failed or was
+// interrupted.
 static Result end(Sequence *sequence, Carried *carried, Error *error)
 {
     if (!carried->pending.image) return RESULT_OK;

@@ -10,7 +10,7 @@ Result single_file_start_sheet(SingleFile *single, int columns, int rows, const 
 Result single_file_start_video(SingleFile *single, TargetFormat format, const VideoOptions *options,
                                Error *error)
 {
-    if (format == TARGET_PNG) return RESULT_OK; // file after file
+    if (format == TARGET_PNG) return RESULT_OK; // each frame has its own file
     if (format == TARGET_Y4M)
         return y4m_create(&single->y4m, options->path, options->width, options->height,
                           options->fps, error);

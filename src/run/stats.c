@@ -8,7 +8,7 @@
 
 #include <sys/resource.h>
 
-// Times to a microsecond: more digits would be noise.
+// Rounds to a microsecond; further digits would be noise.
 static json_t *milliseconds(double ms)
 {
     return json_real((double)(long long)(ms * 1e3 + 0.5) / 1e3);

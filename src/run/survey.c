@@ -13,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// All points of a frame, one behind the other: each section's guides and followers, the mesh.
+// A range in the array of all points of a frame: the guides or the followers of a section, or the
+// mesh.
 typedef struct Group {
     size_t first, count;
     float radius; // m, around each point
@@ -30,8 +31,8 @@ typedef struct Survey {
     uint32_t group_count;
     size_t point_count;
     float (*points)[3], (*before)[3], (*first)[3];
-    bool any;         // points were read
-    uint64_t changes; // of the simulation when they were
+    bool any;         // points have been read
+    uint64_t changes; // simulation->changes when points were read
 } Survey;
 
 bool survey_is_wanted(const Scene *scene)
@@ -118,7 +119,7 @@ static SurveyMove move_between(const float (*a)[3], const float (*b)[3], size_t 
     return (SurveyMove){sqrtf(most), count ? (float)sqrt(sum / (double)count) : 0};
 }
 
-// Reads the points if they have moved since the frame before.
+// Reads the points if they have moved since the last frame.
 static Result follow_points(Survey *survey, SurveyReport *report, Error *error)
 {
     if (survey->any && survey->changes == survey->simulation.changes) return RESULT_OK;

@@ -18,30 +18,30 @@
 
 #define ARGUMENTS_MAX      64
 #define FORMAT_ARGUMENTS   24
-#define PIPE_BYTES         (1 << 20) // a third of a frame of 1280x720 at once instead of 64 KiB
+#define PIPE_BYTES         (1 << 20) // holds a third of a 1280x720 frame; the default is 64 KiB
 #define MESSAGE_TAIL_BYTES 600
-#define FOLDER_FILENO      3 // in ffmpeg: the folder of the video
+#define FOLDER_FILENO      3 // descriptor of the video's folder in the ffmpeg process
 
 struct Video {
-    OutFile file; // only ffmpeg writes to it, the stream here serves to sync and rename
-    pid_t
-        process;  // 0: none. Reaped by video_destroy only, so that video_kill never hits a stranger
-    int input;    // the end of ffmpeg's standard input that is written, -1: closed
-    int messages; // ffmpeg's standard error: a file in memory, which unlike a pipe nobody needs to
-                  // empty
+    OutFile file;  // only ffmpeg writes to it; this stream is used to sync and rename
+    pid_t process; // 0: none. Only video_destroy reaps it, so that video_kill never hits another
+                   // process
+    int input;     // write end of the pipe to ffmpeg's standard input; -1: closed
+    int messages;  // ffmpeg's standard error: a file in memory, which nobody has to drain, unlike a
+                   // pipe
     Leftover *group;
 };
 
 typedef struct Format {
     const char *suffix;
     bool has_alpha, is_even;
-    double fps_shown; // maximum frames per second; 0: all
+    double fps_shown; // maximum frames per second; 0: no limit
     const char *filter, *filter_alpha;
     const char *arguments[FORMAT_ARGUMENTS];
 } Format;
 
-// Players assume BT.709 for videos of this size; by default ffmpeg converts RGB to BT.601.
-// The bitexact flag keeps out of the conversion what depends on the processor.
+// Players assume BT.709 for videos of this size, but ffmpeg's default conversion from RGB is
+// BT.601. The bitexact flag makes the conversion independent of the processor.
 #define TO_YUV                                                                                     \
     "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+bitexact,format="
 
@@ -50,7 +50,7 @@ static const double FPS_MAX = 1000;
 static const Format formats[] = {
     {
         .suffix = ".mp4",
-        .is_even = true, // with halved chroma H.264 has even sizes only
+        .is_even = true, // H.264 with subsampled chroma needs even sizes
         .filter = TO_YUV "yuv420p",
         .arguments = {"-c:v", "libx264", "-preset", "fast", "-crf", "18", "-movflags", "+faststart",
                       "-f", "mp4"},
@@ -66,8 +66,8 @@ static const Format formats[] = {
     },
     {
         .suffix = ".gif",
-        .fps_shown = 50.0, // players slow down shorter delays than 20 ms
-        // A palette for each frame: one for all would keep every frame in memory until the last.
+        .fps_shown = 50.0, // players slow down delays shorter than 20 ms
+        // One palette for each frame: a common palette would need all frames in memory.
         .filter = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1",
         .arguments = {"-f", "gif"},
     },
@@ -100,7 +100,7 @@ static Result check_options(const VideoOptions *options, const Format *format, E
     return RESULT_OK;
 }
 
-// The texts that depend on the options, and the argument list that points to them.
+// The argument list of ffmpeg, and the texts that it points to.
 typedef struct Command {
     char size[32], rate[32], filter[400];
     char *output;
@@ -142,17 +142,16 @@ static bool make_command(Command *command, const Format *format, const VideoOpti
         return false;
     }
     add_arguments(
-        command,
-        (const char *const[]){
-            "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-            // Without this ffmpeg ends with status 0 when the disk fills up at the end.
-            "-xerror", "-f", "rawvideo", "-pixel_format", options->channels == 4 ? "rgba" : "rgb24",
-            "-video_size", command->size, "-framerate", command->rate, "-i", "pipe:0", "-lavfi",
-            command->filter,
-            // The same frames shall give the same bytes: no dates, no versions, and not as many
-            // threads as there are processors, since the encoders' results depend on the number.
-            "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-threads", "4",
-            NULL});
+        command, (const char *const[]){
+                     "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+                     // Without -xerror, ffmpeg exits with status 0 if the disk fills up at the end.
+                     "-xerror", "-f", "rawvideo", "-pixel_format",
+                     options->channels == 4 ? "rgba" : "rgb24", "-video_size", command->size,
+                     "-framerate", command->rate, "-i", "pipe:0", "-lavfi", command->filter,
+                     // The same frames must give the same bytes: no dates, no versions, and a fixed
+                     // number of threads, because the encoders' results depend on it.
+                     "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact",
+                     "-threads", "4", NULL});
     if (format->filter_alpha || format->is_even)
         add_arguments(command,
                       (const char *const[]){"-colorspace", "bt709", "-color_primaries", "bt709",
@@ -162,7 +161,7 @@ static bool make_command(Command *command, const Format *format, const VideoOpti
     return true;
 }
 
-// ffmpeg starts with an empty mask and no signal ignored, whatever they are here.
+// Starts ffmpeg with an empty signal mask and default signal handlers, whatever this process has.
 static int spawn(Video *video, const Command *command, int input_read_end)
 {
     posix_spawn_file_actions_t actions;
@@ -188,7 +187,8 @@ static int spawn(Video *video, const Command *command, int input_read_end)
     posix_spawnattr_setsigdefault(&attributes, &ignored);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK |
                                               POSIX_SPAWN_SETSIGDEF);
-    // The list is not written to; the const is missing from the declaration for historical reasons.
+    // posix_spawnp does not write to the list; its declaration lacks the const for historical
+    // reasons.
     if (!reason)
         reason = posix_spawnp(&video->process, "ffmpeg", &actions, &attributes,
                               (char *const *)command->arguments, environ);
@@ -205,7 +205,7 @@ static int start(Video *video, const Command *command)
     int ends[2];
     if (video->messages < 0 || pipe2(ends, O_CLOEXEC) != 0) return errno;
     video->input = ends[1];
-    // Only a wish: a smaller pipe is slower, no more.
+    // A request only: with a smaller pipe writing is slower, but works.
     fcntl(video->input, F_SETPIPE_SZ, PIPE_BYTES);
     int reason = spawn(video, command, ends[0]);
     close(ends[0]);
@@ -215,7 +215,8 @@ static int start(Video *video, const Command *command)
 static Result start_ffmpeg(Video *video, const Format *format, const VideoOptions *options,
                            Error *error)
 {
-    // A device cannot be renamed to, and most formats are not written from front to back.
+    // A device cannot be the target of a rename, and most formats are not written from front to
+    // back.
     if (!video->file.temporary)
         return error_set(error, RESULT_FAILED, "%s: not a regular file", options->path);
     Command command;
@@ -257,7 +258,7 @@ static void close_input(Video *video)
     video->input = -1;
 }
 
-// The last line that ffmpeg has written, "" if none.
+// The last line that ffmpeg has written to standard error, "" if none.
 static void read_last_message(const Video *video, char *text, size_t size)
 {
     struct stat status;
@@ -272,8 +273,8 @@ static void read_last_message(const Video *video, char *text, size_t size)
     if (line) memmove(text, line + 1, strlen(line));
 }
 
-// Waits for ffmpeg's end and says how it was. It stays a zombie, and its number its own, until
-// video_destroy.
+// Waits until ffmpeg exits and returns its error. The process stays a zombie until video_destroy,
+// so its process number is not reused.
 static Result wait_end(Video *video, Error *error)
 {
     close_input(video);
@@ -299,7 +300,7 @@ Result video_write(Video *video, const Image *image, Error *error)
         ssize_t written = write(video->input, data, left);
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) {
-            // Why the pipe broke is for ffmpeg to say.
+            // ffmpeg's message says why the pipe broke.
             int reason = errno;
             bool broke = reason == EPIPE;
             if (broke && wait_end(video, error) != RESULT_OK) return RESULT_FAILED;
@@ -328,7 +329,7 @@ Result video_finish(Video *video, uint64_t *bytes, Error *error)
     return outfile_commit(&video->file, error);
 }
 
-// Its children, too, which hold the pipe.
+// Also kills ffmpeg's children, which hold the pipe open.
 void video_kill(Video *video)
 {
     kill(-video->process, SIGKILL);

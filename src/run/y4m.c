@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Of a fraction's numbers.
+// The greatest common divisor, to reduce a frame rate's fraction.
 static long find_divisor(long a, long b)
 {
     while (b) {
@@ -21,7 +21,8 @@ static void find_rate(double fps, long *frames, long *seconds)
     for (int i = 0; i < 3; ++i) {
         *seconds = units[i];
         double count = fps * (double)units[i];
-        // Of 1001 the frames are whole thousands; a rate may come as a 32-bit number.
+        // Rates over 1001 have whole thousands as numerators. The rate may be rounded to 32 bits,
+        // so the comparison is relative.
         double step = units[i] == 1001 ? 1000 : 1;
         *frames = lround(count / step) * (long)step;
         if (fabs((double)*frames / count - 1) < 2e-6) break; // 29.97 means 30000/1001
@@ -46,8 +47,8 @@ Result y4m_create(Y4m *y4m, const char *path, int width, int height, double fps,
     return RESULT_OK;
 }
 
-// ITU-R BT.709, sections 3.2 to 3.4 and 4.6, in units of 2^-16: of R, G and B, which have 255 steps
-// where luma has 219 and chroma 224. Grey's chroma is exactly 128.
+// Conversion to Y'CbCr by ITU-R BT.709, sections 3.2 to 3.4 and 4.6, in units of 2^-16. R, G and B
+// have 255 steps; luma has 219, chroma 224. The chroma of grey is exactly 128.
 static void convert(const Image *image, uint8_t *planes)
 {
     enum { HALF = 1 << 15, SHIFT = 16 };
