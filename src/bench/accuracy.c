@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A result. `set`: the hair that ms were measured on, of a simulated second; `value`: a share of
-// the strand's length unless `what` says otherwise; `spread`: standard error of a fit; `bound`:
-// what is stated at most; `front`: "front" if nothing is both faster and closer; `remark`: none
-// yet.
+// A row of results. `set`: the hair on which the ms of a simulated second were measured; `value`: a
+// share of the strand's length, unless `what` says otherwise; `spread`: the standard error of a
+// fit; `bound`: the largest value that the docs state; `front`: "front" if no other row is both
+// faster and more accurate; `remark`: always empty so far.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(TEXT, part, 9) X(TEXT, algo, 9) X(TEXT, variant, 9) X(TEXT, settings, 22)                    \
@@ -38,14 +38,14 @@ typedef struct Accuracy {
     MotionFolder folder;
 } Accuracy;
 
-// What is stated: errors over the length, shares of energy. The first row that fits counts.
+// The stated bounds: errors over the length, shares of energy. The first matching row applies.
 
 static const struct {
     const char *part, *algo; // "": every solver
-    const char *scenario;    // whole, or up to a comma; "": all
+    const char *scenario;    // the whole scenario or its part before a comma; "": all
     const char *what;
-    double rate; // 0: all
-    bool any;    // of every form of the solver, not of the default one alone
+    double rate; // 0: all rates
+    bool any;    // for all variants and settings, not only for the default
     double bound, known;
 } STATED[] = {
     {"motions", "chain", "mean", "error", 60, false, 0.02, NAN},
@@ -91,8 +91,8 @@ static Row row_of(const char *part, const Method *method, double rate, const cha
     return row;
 }
 
-// Checks the bound, and adds the row with the command that repeats it. Falling short of the bound
-// by no more than is known gives the verdict "short", which is no failure.
+// Checks the bound and adds the row, with the command that repeats it. A value above the bound but
+// not above the known error gives the verdict "short", which is not a failure.
 static void add_row(Accuracy *accuracy, Row *row)
 {
     const BenchOptions *options = accuracy->options;
@@ -118,7 +118,8 @@ static void add_row(Accuracy *accuracy, Row *row)
 
 // --- Experiments.
 
-// The rates that are asked for, or `own`, which end with 0; gives their count.
+// Copies the rates of the command line or, without any, `own`, which ends with 0. Returns their
+// number.
 static int list_rates(const BenchOptions *options, const double *own, double *rates)
 {
     int count = 0;
@@ -137,7 +138,7 @@ static void add_order(Accuracy *accuracy, const char *part, const Method *method
     if (count > 1) add_row(accuracy, &row);
 }
 
-// The first values of all cases, by rate.
+// The first value of each case, summed up for each rate.
 typedef struct All {
     const char *what;
     double sum[EXPERIMENT_RATES], most[EXPERIMENT_RATES];
@@ -197,9 +198,10 @@ static Result run_method(Accuracy *accuracy, const Experiment *experiment, const
     return RESULT_OK;
 }
 
-// --- Time beside error: the part "work".
+// --- Time against error: the part "work".
 
-// What is worth comparing: every solver, its variants, and what trades time for accuracy.
+// The methods that are compared: every solver, its variants, and settings that trade time for
+// accuracy.
 static const Method WORTH[] = {
     {"split", "ball", ""},
     {"split", "thesis", ""},
@@ -228,17 +230,17 @@ enum {
     SET_COUNT = sizeof SETS / sizeof *SETS
 };
 
-// A frame is what is timed: its steps, and the positions that are drawn. Rounds over all points,
-// so that a noisy minute hits none alone.
+// Times a frame: its steps and the computation of the drawn positions. Each round visits all
+// points, so that a disturbance of the machine does not hit only one of them.
 enum { FPS = 60, ROUNDS = 2, WARM_UP = 2, MOST_SAMPLES = 20 };
-#define ENOUGH_MS 200.0 // of a point in a round, and of its warm-up
+#define ENOUGH_MS 200.0 // time for a point in a round, and for its warm-up
 
 typedef struct Point {
     Method method;
-    double rate, error; // 1/s; mean over the length
+    double rate, error; // 1/s; mean error over the length
     double samples[ROUNDS * MOST_SAMPLES];
     int count;
-    Times times; // a simulated second, ms
+    Times times; // ms for a simulated second
     bool front;
 } Point;
 
@@ -248,7 +250,8 @@ typedef struct Work {
     int count;
 } Work;
 
-// A method with a variant or settings of its own alone, else those that are worth comparing.
+// If a method with a variant or settings was given, lists only this method, otherwise the methods
+// of WORTH.
 static Result list_points(Work *work, Error *error)
 {
     static const double own[] = {60, 120, 240, 480, 0};
@@ -268,7 +271,7 @@ static Result list_points(Work *work, Error *error)
     return RESULT_OK;
 }
 
-// Geometric mean of the errors over the motions that count for it.
+// Geometric mean of the errors over the motions that are included in the mean.
 static Result find_error(const Accuracy *accuracy, Point *point, Error *error)
 {
     const MotionFolder *folder = &accuracy->folder;
@@ -329,7 +332,7 @@ static Result time_points(Work *work, const Strands *strands, Error *error)
     return RESULT_OK;
 }
 
-// By the least time: noise only adds.
+// Compares least times, because disturbances only add time.
 static bool is_on_front(const Work *work, const Point *p)
 {
     for (int k = 0; k < work->count; ++k) {

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What options_parse fills; numbers that are lists or words come as text first.
+// The target of options_parse. Lists and names are read as text first.
 typedef struct Values {
     BenchOptions bench;
     const char *rates, *size, *raster, *oit, *shadow, *quality;
-    const char *param[BENCH_MOST_PARAMS]; // of the row of that number below
+    const char *param[BENCH_MOST_PARAMS]; // text of the parameter param_info[i] below
     bool software, osmesa, no_shrink;
 } Values;
 
@@ -117,7 +117,7 @@ static const char *const NOTES[] = {
 
 // --- Solvers' parameters as options.
 
-// Options and, behind them, every parameter of solvers; param_info[i] is of the row OWN_COUNT + i.
+// The options, followed by every parameter of solvers. Row OWN_COUNT + i belongs to param_info[i].
 typedef struct Rows {
     Option option[OWN_COUNT + BENCH_MOST_PARAMS];
     char name[BENCH_MOST_PARAMS][NAME_SIZE];
@@ -149,7 +149,8 @@ static void list_rows(Rows *rows)
     }
 }
 
-// "--rope-iterations 50 --style 0": what was given, in the table's order.
+// Joins the parameters that were given, in the table's order, such as "--rope-iterations 50 --style
+// 0".
 static Result join_settings(Values *values, const Rows *rows, Error *error)
 {
     size_t size = 0;
@@ -164,7 +165,7 @@ static Result join_settings(Values *values, const Rows *rows, Error *error)
     return RESULT_OK;
 }
 
-// That values are such, whatever the solver will be.
+// Checks that the values are valid. Which solver reads them is not known yet.
 static Result check_settings(const BenchOptions *options, Error *error)
 {
     SectionParams params;
@@ -195,7 +196,7 @@ Result bench_options_one_algo(const BenchOptions *options, Error *error)
     return error_set(error, RESULT_USAGE, "--algo: got '%s', expected one solver", algo);
 }
 
-// --- Values that are words or lists.
+// --- Options whose values are names or lists.
 
 static Result read_rates(const char *text, BenchOptions *options, Error *error)
 {
@@ -251,9 +252,9 @@ static Result read_words(Values *values, Error *error)
     return RESULT_OK;
 }
 
-// --- All of it.
+// --- The command line.
 
-// The page's heading: the command, or the files whose rows it shows.
+// Sets the heading of the HTML page: the command or, for `page`, the names of its CSV files.
 static Result name_page(BenchOptions *options, char **words, int count, Error *error)
 {
     char *joined = NULL;
@@ -317,7 +318,7 @@ void bench_options_destroy(BenchOptions *options)
     *options = (BenchOptions){0};
 }
 
-// Whether a word of `length` is in the list of `text`.
+// Whether the comma-separated list `text` contains a word of this length.
 static bool lists(const char *text, const char *word, size_t length)
 {
     for (size_t part; *text; text += part + (text[part] == ',')) {

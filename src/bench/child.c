@@ -19,7 +19,7 @@ double child_number(const json_t *row, const char *name)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-// Runs the words with the variable set, its output thrown away.
+// Runs this program with the given arguments and environment variable; discards its output.
 static Result execute(char **words, const ChildRun *run, double *wall_ms, Error *error)
 {
     int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC), status = 0;
@@ -28,7 +28,7 @@ static Result execute(char **words, const ChildRun *run, double *wall_ms, Error 
     double begin = clock_ms();
     setenv(run->variable, run->value, 1);
     pid_t child = fork();
-    if (child == 0) { // only what may be called between fork and exec
+    if (child == 0) { // only async-signal-safe calls between fork and exec
         dup2(nowhere, STDOUT_FILENO);
         dup2(nowhere, STDERR_FILENO);
         execv("/proc/self/exe", words);
@@ -42,7 +42,7 @@ static Result execute(char **words, const ChildRun *run, double *wall_ms, Error 
     else
         unsetenv(run->variable);
     free(kept);
-    // 1: a bound is broken, which this process reports
+    // Exit status 1 means that a bound is broken. This process reports that itself.
     if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) <= 1) return RESULT_OK;
     return error_set(error, RESULT_FAILED, "tractrix-bench: another process to measure in failed");
 }

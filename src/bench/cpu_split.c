@@ -11,13 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Which rows of a tile's ends are what.
+// The rows of a tile of ends: three each for root, tip and velocity, one for the reach.
 enum { W = CPU_SPLIT_WIDTH, ROOT = 0, TIP = 3, VELOCITY = 6, REACH = 9, END_ROWS = 10 };
 enum { LINK_ROWS = 4, PASSES = 4 };
 
 static const float LOG2_E = 1.44269504f, MAX_EXPONENT = 60;
 
-// --- Making it.
+// --- Setting up.
 
 static void place_strand(CpuSplit *split, const Strands *strands, uint32_t strand, uint32_t slot)
 {
@@ -50,7 +50,8 @@ Result cpu_split_create(CpuSplit *split, const Strands *strands, Error *error)
     split->ends = calloc((size_t)split->tile_count * END_ROWS * W, 4);
     if (!split->links || !split->ends)
         return error_set(error, RESULT_FAILED, "no memory for strands");
-    for (uint32_t slot = 0; slot < split->tile_count * W; ++slot) // the last tile is filled up
+    // Copies of the last strand fill the last tile.
+    for (uint32_t slot = 0; slot < split->tile_count * W; ++slot)
         place_strand(split, strands, slot < split->strand_count ? slot : split->strand_count - 1,
                      slot);
     return RESULT_OK;
@@ -103,7 +104,8 @@ SIMD_INLINE Float3 scale(float s, Float3 a)
     return (Float3){s * a.x, s * a.y, s * a.z};
 }
 
-// Comparisons that are one instruction: fmaxf must look for NaNs.
+// One link of the tractrix. simd_max and simd_min compile to one instruction; fmaxf would also have
+// to handle NaN.
 SIMD_INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
 {
     float ss = simd_max(dot(*move, *move), 1e-36f);
@@ -118,8 +120,8 @@ SIMD_INLINE Float3 turn(Float3 d, float l, Float3 *move, bool inlined)
     return add(d, 1, change);
 }
 
-// Where the tip is drawn to, and its new velocity: a mass on a string of length R.
-// `push`: what forces have changed that velocity by.
+// The point to which the tip is moved, and its new velocity: the tip is a mass on a string of
+// length R. `push`: the change of velocity by forces.
 SIMD_INLINE Float3 tip_target(Float3 tip, Float3 *velocity, Float3 push, Float3 root, float R,
                               float dt)
 {
@@ -152,7 +154,7 @@ SIMD_INLINE void store(float *row, Float3 a)
     row[0] = a.x, row[W] = a.y, row[2 * W] = a.z;
 }
 
-// Kicks the tip and moves it; gives how far the strand's end is from there.
+// Applies forces to the tip and moves it. Returns the vector from the strand's end to the tip.
 SIMD_INLINE Float3 begin_strand(const CpuSplit *split, float *end, Float3 span)
 {
     Float3 g = {split->gravity[0], split->gravity[1], split->gravity[2]};
@@ -164,13 +166,13 @@ SIMD_INLINE Float3 begin_strand(const CpuSplit *split, float *end, Float3 span)
     return add(add(target, -1, root), -1, span);
 }
 
-// Pulls a link: sign -1 from its end, 1 from its beginning.
+// Pulls a link from its end (sign -1) or from its beginning (sign 1).
 SIMD_INLINE void pull_link(float *row, float sign, Float3 *move, bool inlined)
 {
     store(row, scale(sign, turn(scale(sign, load(row)), row[3 * W], move, inlined)));
 }
 
-// One Newton step towards length 1, for a direction that is off by rounding only.
+// Makes the length of a direction 1 with one Newton step, which is enough for rounding errors.
 SIMD_INLINE void renormalise(float *row)
 {
     Float3 d = load(row);
@@ -194,7 +196,7 @@ static void step_strand(const CpuSplit *split, float *links, float *end)
     for (int j = 0; j < n; ++j) renormalise(links + j * LINK_ROWS * W);
 }
 
-// --- Strands side by side: the same, with the loop over them innermost.
+// --- W strands at once: the same step with the loop over strands innermost.
 
 SIMD_INLINE void step_tile(const CpuSplit *split, float *links, float *ends)
 {
@@ -260,9 +262,9 @@ double cpu_split_length(const CpuSplit *split)
     return (double)split->ends[REACH * W];
 }
 
-// --- Times.
+// --- Timing.
 
-// Steps by threads that stay together: one clock, a barrier before and after each.
+// Threads that step together: a barrier before and after each step, timed by one of them.
 typedef struct March {
     CpuSplit *split;
     CpuSplitForm form;
@@ -299,7 +301,7 @@ Result cpu_split_time_steps(Times *times, CpuSplit *split, CpuSplitForm form, in
     return RESULT_OK;
 }
 
-enum { ELEMENTS = 16 << 20, RUNS = 12 }; // 64 MiB an array
+enum { ELEMENTS = 16 << 20, RUNS = 12 }; // 64 MiB for each array
 
 typedef struct Arrays {
     float *a, *b, *c;

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-#define LENGTH 0.25 // of strands that are no motion's, m
+#define LENGTH 0.25 // m: length of strands that do not come from a motion file
 #define G      9.81
 
-// --- What measurements share.
+// --- Helpers.
 
 static void add_value(Run *run, const char *what, double value)
 {
@@ -23,7 +23,7 @@ static double square_distance(const float a[3], const double b[3])
     return sum;
 }
 
-// RMS over particles 1 .. n-1, over the length.
+// RMS distance of particles 1 .. n-1, over the length.
 static double rms_distance(float (*const a)[3], const double (*b)[3], int n)
 {
     double sum = 0;
@@ -31,7 +31,7 @@ static double rms_distance(float (*const a)[3], const double (*b)[3], int n)
     return sqrt(sum / (n - 1)) / LENGTH;
 }
 
-// --- motions: RMS distance from exact motions, without style.
+// --- motions: RMS distance from the exact motions, without style.
 
 static bool motions_set_up(Setup *setup)
 {
@@ -50,9 +50,10 @@ static Result motions_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- pendulum: RMS distance of a heavy tip over its length, for each pendulum of the CSV files
-// (columns x_NAME, y_NAME, perhaps z_NAME) with the start velocity and drag that JSON has of NAME.
-// split: the tip of a straight strand of 16; other solvers: a strand of 2.
+// --- pendulum: RMS distance of a heavy tip from the exact motion, over its length, for each
+// pendulum of the CSV files (columns x_NAME, y_NAME, optional z_NAME). The JSON file has the start
+// velocity and drag of NAME. For split: the tip of a straight strand of 16 particles; for other
+// solvers: a strand of 2 particles.
 
 static double pendulum_at(const Setup *setup, size_t row, int axis)
 {
@@ -86,13 +87,13 @@ static bool pendulum_set_up(Setup *setup)
     return false;
 }
 
-// False if the solver cannot be given the start velocity.
+// False if the solver cannot start with a velocity.
 static bool set_velocity(const Run *run)
 {
     const double *v = run->setup->velocity;
     const HairBatch *batch = &run->trial.hair.batches[0];
     const float velocity[4] = {(float)v[0], (float)v[1], (float)v[2], 0};
-    size_t offset = sizeof velocity; // behind the tip's point
+    size_t offset = sizeof velocity; // the velocity follows the tip's position
     if (v[0] == 0 && v[1] == 0 && v[2] == 0) return true;
     const GpuBuffer *buffer = trial_buffer(&run->trial, 0, SOLVER_TIPS);
     if (!buffer) {
@@ -129,8 +130,8 @@ static Result pendulum_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- static: RMS distance, after 20 s with drag, from the exact minimum of the energy of strands
-// in their style's position springs (cases of static_style.json).
+// --- static: RMS distance after 20 s with drag from the exact minimum of energy of strands with
+// the style's position springs (cases of static_style.json).
 
 enum { REST_S = 20, REST_STEPS = 1200 };
 
@@ -167,9 +168,9 @@ static Result rest_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- drift: a helix at default parameters, settled for 10 s (or half the time): how far it goes
-// from there in what is left ("drift", RMS at the end), and the farthest that a particle goes from
-// frame to frame ("tremor"), both over the length.
+// --- drift: a helix with default parameters, settled for 10 s (or half of the time). "drift" is
+// the RMS displacement from there at the end; "tremor" is the largest displacement of a particle
+// from frame to frame. Both are over the length.
 
 enum { SETTLE_S = 10, FPS = 60 };
 
@@ -182,7 +183,7 @@ static bool drift_set_up(Setup *setup)
     return setup->number < 2;
 }
 
-// The farthest that a particle has gone since `before`, over the length; `before` becomes now.
+// The largest displacement of a particle since `before`, over the length. Copies `now` to `before`.
 static double farthest(float (*const now)[3], double (*before)[3], int n)
 {
     double most = 0;
@@ -213,16 +214,17 @@ static Result drift_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- beam: strands that bend under their own weight, held horizontally at the root: RMS distance
-// at rest from the exact shape of the same chain, and the tip's drop.
+// --- beam: strands that bend under their own weight, held horizontally at the root: the RMS
+// distance at rest from the exact shape of the same chain, and the drop of the tip.
 //
-// Angles a_j below the horizontal of segments j = 1 .. n, of length l; particles of mass 1.
+// Angles a_j of the segments j = 1 .. n of length l are below the horizontal; particles have mass
+// 1.
 //
-// chain: joint j turns by d_j = a_j - a_(j-1) (a_0 = 0) against the weight of all that hangs
-// beyond:
+// chain: joint j bends by d_j = a_j - a_(j-1) (a_0 = 0) and balances the weight of everything
+// beyond it:
 //     K n^2 l sin(d_j) = sum over i >= j of g (x_i - x_(j-1)),
-// the exact minimum of the discrete rod's energy (glsl/sim/bend.glsl). Relaxed, because x depends
-// on a.
+// which is the exact minimum of the discrete rod's energy (glsl/sim/bend.glsl). Solved by
+// relaxation, because x depends on a.
 static void solve_joints(double stiffness, int n, double *angle)
 {
     for (int j = 1; j <= n; ++j) angle[j] = 0;
@@ -240,10 +242,10 @@ static void solve_joints(double stiffness, int n, double *angle)
     }
 }
 
-// spring: each link is drawn to its own horizontal, against the weight that hangs at its end:
+// spring: each link is pulled towards the horizontal and balances the weight at its end:
 //     n b a_j = (n - j + 1) g cos(a_j),
-// the balance of forces across link j (glsl/sim/spring.comp), with b at most an eighth of the
-// coil's stiffness (the default of --spring-coil, 1e4/s2) times the length. By Newton's method.
+// the balance of forces across link j (glsl/sim/spring.comp). b is at most an eighth of the coil's
+// stiffness (the default of --spring-coil, 1e4/s2) times the length. Solved by Newton's method.
 static void solve_links(double stiffness, int n, double *angle)
 {
     for (int j = 1; j <= n; ++j) {
@@ -254,9 +256,10 @@ static void solve_links(double stiffness, int n, double *angle)
     }
 }
 
-// The small drop of a continuous beam's tip over its length: q L^4/(8 E I) of a cantilever under
-// its own weight q (Gere and Timoshenko, Mechanics of Materials), with E I = K L^2 and q = n g/L:
-// n g/(8 K). For stiff rods; a spring's links are no beam.
+// For small deflections, the drop of the tip of a continuous beam over its length: a cantilever
+// under its own weight q drops by q L^4/(8 E I) (Gere and Timoshenko, Mechanics of Materials). With
+// E I = K L^2 and q = n g/L that is n g/(8 K). Valid for stiff rods only; the links of spring do
+// not form a beam.
 static bool beam_set_up(Setup *setup)
 {
     static const double stiffnesses[] = {5, 50, 500};
@@ -290,7 +293,7 @@ static Result beam_measure(Run *run, Error *error)
 }
 
 // --- stretch: the greatest | |x_j - x_(j-1)| / l_j - 1 | over all links and frames of the exact
-// motions, as drawn and, of solvers that stretch, as simulated.
+// motions: as drawn and, for solvers that stretch, as simulated.
 
 static bool stretch_set_up(Setup *setup)
 {
@@ -316,7 +319,8 @@ static Result stretch_measure(Run *run, Error *error)
                 rest += pow((double)(float)to[k] - (double)(float)from[k], 2);
                 size = fmax(size, fabs((double)x[j][k]));
             }
-            // Less what the rounding of stored positions explains: 2^-24 of a coordinate, twice.
+            // Subtract what rounding of stored positions can cause: 2^-24 of a coordinate at both
+            // ends.
             double off = fabs(sqrt(now) - sqrt(rest)), rounding = 2 * 1.8 * 0x1p-24 * size;
             if (!((off - rounding) / sqrt(rest) <= most)) most = (off - rounding) / sqrt(rest);
         }
@@ -325,11 +329,11 @@ static Result stretch_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- energy: a straight strand held horizontally and a helix fall. The greatest rise of energy
-// above the start's in what a strand could lose by falling ("rise") and, without drag and style,
-// the change over the whole run ("change"). Kinetic energy is that of the solver's own velocities;
-// "rise as drawn" has it from the drawn motion from step to step, and potential energy from the
-// middle of that. Of split, whose tip alone has mass, there is only that of the tip.
+// --- energy: a straight strand held horizontally and a helix fall. "rise" is the greatest rise of
+// energy above the start, over the energy that a strand can lose by falling. "change", without drag
+// and style, is the change over the whole run. Both take kinetic energy from the solver's own
+// velocities. "rise as drawn" takes it from the drawn positions of successive steps, and potential
+// energy at their middle. For split only the tip has mass, so only the tip's energy counts.
 
 static bool energy_set_up(Setup *setup)
 {
@@ -347,7 +351,7 @@ static bool energy_set_up(Setup *setup)
     return setup->number < 12;
 }
 
-// The drawn positions; split's tips in place of the strands' ends.
+// Reads the drawn positions. For split the ends are replaced by the tips.
 static Result read_masses(Trial *trial, int n, double (*points)[3], Error *error)
 {
     TRY(trial_read(trial, error));
@@ -361,8 +365,8 @@ static Result read_masses(Trial *trial, int n, double (*points)[3], Error *error
     return RESULT_OK;
 }
 
-// Of the motion from a to b in dt, less that of the start, over what falling can give. Particles
-// from `from` on have mass.
+// The energy of the motion from a to b in dt, minus the energy of the start, over the energy that
+// falling can release. Particles from index `from` on have mass.
 static double energy(const double (*start)[3], const double (*a)[3], const double (*b)[3], int from,
                      int n, double dt)
 {
@@ -376,8 +380,9 @@ static double energy(const double (*start)[3], const double (*a)[3], const doubl
     return sum / budget;
 }
 
-// The same by the solver's own velocities: with `now` at the end of a way of h seconds or, where
-// they are those at a step's end, in its middle. h: of the steps that the solver really takes.
+// The energy with the solver's own velocities: the energy of a motion over h seconds that ends at
+// `now` or, if the solver stores velocities at the end of a step, has `now` in its middle. h is the
+// duration of the steps that the solver really takes.
 static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
                          const double (*now)[3])
 {
@@ -405,7 +410,7 @@ static void raise_most(double *most, double e)
     if (!(e <= *most)) *most = e; // a NaN stays
 }
 
-// Looks at every step in the first second, when hair falls, and 4 times a second then.
+// Checks every step of the first second, in which the hair falls, and then 4 steps a second.
 static Result energy_measure(Run *run, Error *error)
 {
     Trial *trial = &run->trial;
@@ -442,8 +447,8 @@ static Result energy_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- rate: two exact motions' starts and heads, hair with the solver's default style; RMS distance
-// over the length, over 2 s, from that at the finest rate.
+// --- rate: the start and the head's motion of two exact motions, with the solver's default style:
+// RMS distance over the length, over 2 s, from the result at the finest rate.
 
 enum { RATE_FPS = 30, RATE_FRAMES = 2 * RATE_FPS, RATE_POINTS = 128 };
 
@@ -464,7 +469,7 @@ static bool rate_set_up(Setup *setup)
 
 static Result rate_measure(Run *run, Error *error)
 {
-    static float finest[RATE_FRAMES][RATE_POINTS][3]; // large
+    static float finest[RATE_FRAMES][RATE_POINTS][3]; // static, because it is large
     const Motion *motion = run->setup->motion;
     double sum = 0;
     for (int f = 0; f < RATE_FRAMES; ++f) {
@@ -480,7 +485,7 @@ static Result rate_measure(Run *run, Error *error)
     return RESULT_OK;
 }
 
-// --- scale: the same hair in a world of centimetres: RMS distance over the length after 30 steps.
+// --- scale: the same hair with centimetres as units: RMS distance over the length after 30 steps.
 
 enum { SCALE_N = 16, SCALE_STEPS = 30 };
 
@@ -537,7 +542,7 @@ bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder
     return experiment->set_up(setup);
 }
 
-// All parameters of solvers that are lengths, or accelerations of them.
+// Scales all parameters of solvers that are lengths or accelerations.
 static void scale_params(SectionParams *params, double units)
 {
     for (size_t i = 0; i < PARAM_COUNT; ++i) {

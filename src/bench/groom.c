@@ -5,13 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-// What is stated of every solver that has a style, in its default form: displacement at rest, the
-// space that hair takes up there, and how much of its swing the balance leaves (motion.md's
-// figures).
+// The bounds that motion.md states for the default variant of every solver with a style:
+// displacement at rest, volume at rest, and the share of the swing that remains with a balanced
+// groom.
 static const double REST_MOST = 0.01, VOXELS_LEAST = 0.95, VOXELS_MOST = 1.05, LIFE_LEAST = 0.7;
 
-// Shares are of strand lengths, depths in mm; see groom_stage.h. `life`: swing over that with
-// --rest hanging.
+// Distances are over the strand lengths; depths are in mm; see groom_stage.h. `life`: the swing
+// over the swing with --rest hanging.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(CHARS, hair, 20) X(TEXT, algo, 9) X(REAL, rate, 4)                                           \
@@ -68,9 +68,9 @@ static void describe(Row *row, const GroomStage *stage)
     row->head = *stage->scene.run.mesh ? "mesh" : stage->assets.has_mesh ? "fitted" : "none";
 }
 
-// --- One solver on one file at one rate.
+// --- One method on one file at one rate.
 
-// `locks`: whether the shake measures them.
+// `locks`: measure how strands stay together during the shake.
 static Result open_stage(GroomStage *stage, const Groom *groom, const Method *method, bool shaking,
                          bool locks, Error *error)
 {
@@ -129,14 +129,14 @@ static const SolverType *type_of(const Method *method)
     return NULL;
 }
 
-// Whether --rest changes how the method moves.
+// Whether --rest changes the motion of this method.
 static bool has_life(const Method *method)
 {
     return params_find("rest") && !strstr(method->settings, "--rest ") &&
            !solver_is_static(type_of(method));
 }
 
-// The swing of hair whose groom is not balanced.
+// Measures the swing with --rest hanging, where the groom is not balanced, and sets row->life.
 static Result measure_life(const Groom *groom, Row *row, Error *error)
 {
     GroomStage stage;
@@ -160,7 +160,7 @@ static bool has_bounds(const Method *method)
     return type_of(method)->style && trial_is_default(method);
 }
 
-// "worst" of two verdicts: broken before holds before none.
+// The worse of two verdicts: "broken" before "holds" before "".
 static const char *worse(const char *a, const char *b)
 {
     return strcmp(a, "broken") == 0 || !*b ? a : b;
@@ -184,7 +184,7 @@ static void check_row(Groom *groom, Row *row, bool rest, bool shake)
                                                               row->hair, row->algo, row->rate));
 }
 
-// --- All of it.
+// --- All rows.
 
 static Result run_row(Groom *groom, Error *error)
 {

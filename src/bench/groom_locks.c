@@ -6,14 +6,14 @@
 #include <stdlib.h>
 
 enum { LEVELS = 3, NEIGHBOURS = 8 };
-static const double STILL = 2; // spacings
+static const double STILL = 2; // in spacings of strands
 
-// The vertex of each strand at a height, and where it is.
+// A height level: the vertex of each strand at this height, its position and its neighbours.
 typedef struct Level {
     uint32_t *vertex;
     float (*point)[3];
     Neighbour (*found)[NEIGHBOURS];
-    double *farthest; // squared distance to the last of those found
+    double *farthest; // squared distance to the last neighbour
     Nearest tree;
 } Level;
 

@@ -117,14 +117,14 @@ double groom_shape_spread(const GroomShape *shape, const float (*points)[3], con
     return sum / shape->strand_count;
 }
 
-// --- Voxels, as a list of numbers that have 21 bits for each axis.
+// --- Voxels, as a list of keys with 21 bits for each axis.
 
 typedef struct Voxels {
     uint64_t *list;
     size_t count, room;
 } Voxels;
 
-static const double MOST_CELLS = (1 << 20) - 1; // either way
+static const double MOST_CELLS = (1 << 20) - 1; // in each direction from the origin
 enum { SAMPLES_PER_EDGE = 4, MOST_SAMPLES = 100000 };
 
 static uint64_t voxel_at(const GroomShape *shape, const double place[3])
@@ -205,13 +205,13 @@ typedef struct DepthWork {
     const GroomShape *shape;
     const float (*points)[3];
     float *depths;
-    float low[3], high[3]; // of the mesh
+    float low[3], high[3]; // bounds of the mesh
     int parts;
 } DepthWork;
 
 static bool is_within(const DepthWork *work, const float point[3])
 {
-    for (int k = 0; k < 3; ++k) // false for a NaN
+    for (int k = 0; k < 3; ++k) // NaN is not inside
         if (!(point[k] > work->low[k] && point[k] < work->high[k])) return false;
     return true;
 }

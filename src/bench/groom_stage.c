@@ -74,7 +74,7 @@ static Result make_room(GroomStage *stage, Error *error)
     return error_set(error, RESULT_FAILED, "no memory for %zu particles", points);
 }
 
-// All strands that are drawn, where they are: guides, then followers.
+// Reads the drawn positions of all strands: guides, then followers.
 static Result read_drawn(GroomStage *stage, Error *error)
 {
     const SimulationSection *section = &stage->simulation.sections[0];
@@ -95,7 +95,7 @@ static uint32_t list_strands(uint32_t *first, const Hair *hair, uint32_t at)
     return at;
 }
 
-// Finds the neighbours of each drawn strand. The groom is in its rest pose.
+// Finds the neighbours of each drawn strand. The groom must be in its rest pose.
 static Result find_locks(GroomStage *stage, Error *error)
 {
     const Hair *guides = &stage->simulation.sections[0].hair,
@@ -157,7 +157,7 @@ void groom_stage_destroy(GroomStage *stage)
 
 // --- Frames.
 
-// Takes over what is drawn, in the head's frame.
+// Copies the drawn positions, transformed to the head's frame.
 static Result read_points(GroomStage *stage, Error *error)
 {
     const Hair *hair = &stage->simulation.sections[0].hair;
@@ -180,7 +180,7 @@ static const float (*points_of(const GroomStage *stage))[3]
     return (const float(*)[3])stage->points;
 }
 
-// A frame; *ms: its time a step, NaN if it has none.
+// Simulates a frame. *ms: time for each step, NaN if the frame had no step.
 static Result next_frame(GroomStage *stage, bool read, double *ms, Error *error)
 {
     Simulation *simulation = &stage->simulation;
@@ -204,7 +204,7 @@ Result groom_stage_rest(GroomStage *stage, GroomRest *rest, Error *error)
     while (simulation_settle(&stage->simulation)) {
     }
     for (int frame = 1; frame <= REST_FRAMES; ++frame) {
-        int first = REST_FRAMES - JITTER_FRAMES; // that is read
+        int first = REST_FRAMES - JITTER_FRAMES; // the first frame that is read
         TRY(next_frame(stage, frame >= first, &ms, error));
         if (frame > first)
             rest->jitter = groom_shape_greater(rest->jitter,

@@ -36,32 +36,34 @@ static const BenchScheme SCHEMES[] = {
 enum { SCHEME_COUNT = sizeof SCHEMES / sizeof *SCHEMES };
 static const char *const SETS[] = {"straight", "curls", "fur", "files", NULL};
 
-// Hair before a camera that frames it, and its exact images once they are needed.
+// Hair in front of a camera that frames it, and its exact images, which are drawn when they are
+// first needed.
 typedef struct Stage {
     const BenchOptions *options;
     const Gpu *gpu;
-    const char *set, *file; // one of both
-    Scene scene;            // of one section, all at its defaults
+    const char *set, *file; // one of the two is NULL
+    Scene scene;            // one section with default parameters
     Strands strands;
     Hair hair;
-    float radius; // of its fibres, m
+    float radius; // m: radius of a fibre
     View view;
     struct Exact {
-        Image image;    // without pixels until it is needed
-        double seconds; // that it took
-    } exact[2][2];      // without and with shadows, straight and smooth
+        Image image;    // no pixels until it is needed
+        double seconds; // time to draw it
+    } exact[2][2];      // [with shadows][smooth]
 } Stage;
 
-// How hair is drawn; the texts are the scene's.
+// How the hair is drawn. The strings belong to the scene.
 typedef struct Manner {
     RunParams run;
     SectionParams material;
 } Manner;
 
-// ms: drawing and reading back; cpu_ms: the same as processor time of all threads, which a busy
-// machine lengthens less. `rms`: levels of 255 over the pixels that differ from the background in
-// either image, `covered` of all; `passes`: their least ms, with waits between them; `reference_s`:
-// that the exact image took, NaN: none.
+// ms: wall time of drawing and reading back. cpu_ms: processor time of all threads for the same,
+// which depends less on other load of the machine. `rms`: levels of 255 over the pixels that differ
+// from the background in either image; `covered`: the share of these pixels. `passes`: the least ms
+// of each pass, measured with a wait after each. `reference_s`: seconds for the exact image, NaN
+// without one.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(CHARS, set, 19) X(CHARS, scheme, 23) X(REAL, ms_min, 7) X(REAL, ms_median, 9)                \
@@ -100,7 +102,7 @@ static Result read_hair(const Stage *stage, Strands *strands, Error *error)
     return strands_make_set(strands, stage->set, 1, error);
 }
 
-// It may be destroyed in either case.
+// The stage must be destroyed even if this fails.
 static Result stage_create(Stage *stage, const BenchOptions *options, const Gpu *gpu,
                            const char *set, const char *file, Error *error)
 {
@@ -153,7 +155,7 @@ static Result find_manner(const Stage *stage, const BenchScheme *scheme, Manner 
 
 // --- The exact image.
 
-// The share of each light that reaches the vertices: [light_count][vertex_count], the caller's.
+// The share of each light that reaches each vertex: [light_count][vertex_count]. Free `left`.
 static Result find_left(const ReferenceScene *scene, const float middle[3], float **left,
                         Error *error)
 {
@@ -196,8 +198,9 @@ static Result draw_exact(const Stage *stage, const Manner *manner, const Strands
     return result;
 }
 
-// The exact image for a manner, drawn at the first need: many seconds. Smooth strands have the
-// points of their curves as vertices; strands that the manner leaves out are there.
+// Returns the exact image for a manner, which takes many seconds to draw the first time. Smooth
+// strands are drawn through extra vertices on their curves. The exact image has all strands, also
+// those that the manner leaves out.
 static Result find_exact(Stage *stage, const Manner *manner, const struct Exact **found,
                          Error *error)
 {
@@ -220,7 +223,7 @@ static Result find_exact(Stage *stage, const Manner *manner, const struct Exact 
     return result;
 }
 
-// Over the pixels that differ from the background, which both have, in either image.
+// Compares the pixels that differ from the background in either image.
 static void compare(const Image *exact, const float background[3], const Image *image, Row *row)
 {
     uint8_t behind[3];
@@ -241,7 +244,7 @@ static void compare(const Image *exact, const float background[3], const Image *
 
 enum { WARM_UP = 2, PASS_FRAMES = 4 };
 
-// Some more images with waits between the passes, for the least that each costs.
+// Draws some more images with a wait after each pass, and keeps the least time of each pass.
 static Result time_passes(Renderer *renderer, const RenderFrame *frame, const RenderItem *item,
                           Image *image, Row *row, Error *error)
 {
@@ -289,7 +292,7 @@ static Result draw_frames(const Stage *stage, const Manner *manner, Renderer *re
     return time_passes(renderer, &frame, &item, image, row, error);
 }
 
-// Of the stage's size, on an opaque background.
+// Options for images of the stage's size on an opaque background.
 static RendererOptions renderer_options(const Stage *stage, const RunParams *run)
 {
     RendererOptions options = renderer_options_of(run);
@@ -334,7 +337,7 @@ static Result measure(Stage *stage, const BenchScheme *scheme, Row *row, Error *
 
 // --- Rows.
 
-// "quads, k = 8, 2 x 2, dom"; a preset by its word.
+// Writes the name of a scheme, such as "quads, k = 8, 2 x 2, dom"; for a quality preset its name.
 static void name_scheme(const BenchScheme *scheme, char *name, size_t size)
 {
     char layers[24] = "", samples[32] = "";
@@ -352,7 +355,7 @@ static void name_scheme(const BenchScheme *scheme, char *name, size_t size)
              scheme->shadow != SHADOW_NONE ? word_of("shadow", (int)scheme->shadow) : "");
 }
 
-// The row's own command: the scheme's words that are not the defaults.
+// Writes the command that repeats the row. It leaves out settings that have their defaults.
 static void write_command(const Stage *stage, const BenchScheme *scheme, Row *row)
 {
     char layers[24] = "", samples[24] = "";
@@ -384,7 +387,7 @@ static Result add_row(Table *table, Stage *stage, const BenchScheme *scheme, Err
     return RESULT_OK;
 }
 
-// The schemes in turn, for one set or file.
+// Adds a row for each scheme on one set or file.
 static Result add_rows(Table *table, const BenchOptions *options, const char *set, const char *file,
                        const BenchScheme *schemes, int count, Error *error)
 {

@@ -11,17 +11,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A way to compute light in hair: flags of tractrix-render, which of the tracer's tables has the
-// same bounces, and what is stated of it. Bounds are of each channel: of a case's mean over the
-// tracer's, of its rel (light_case.h), and of the mean rel of all cases; NaN: none.
+// A way to compute light in hair: flags of tractrix-render, the table of the path tracer that has
+// the same bounces, and the bounds that the docs state. Bounds apply to each channel: to a case's
+// mean over the tracer's mean, to its rel (light_case.h), and to the mean rel of all cases. NaN: no
+// bound.
 typedef struct Way {
     const char *name, *flags;
     LightTable table;
-    bool extra; // measured for --way all alone
+    bool extra; // measured only if it is named, or with --way all
     double mean_least, mean_most, rel_most, all_rel_most;
 } Way;
 
-// The tracer's strands are curves through the vertices, as those of --smooth are.
+// The path tracer's strands are smooth curves through the vertices, as with --smooth.
 #define CURVES  "--smooth 3 --shadow-size 512 "
 #define UNBOUND LIGHT_ALL, true, NAN, NAN, NAN, NAN
 static const Way WAYS[] = {
@@ -42,10 +43,10 @@ static const Way WAYS[] = {
 };
 enum { WAY_COUNT = sizeof WAYS / sizeof *WAYS };
 
-// `mean_*`: over the tracer's mean; `rel_*`: RMS of the difference of blocks over that of the
-// tracer's; `coverage`: over the tracer's. Milliseconds of an image of hair that moves, so that
-// light is found anew, and of one that stands still. `repeat`: RMS of the difference of the last
-// image from the first, over that of the first.
+// `mean_*`: the mean over the tracer's mean; `rel_*`: the RMS difference of blocks over the RMS of
+// the tracer's blocks; `coverage`: over the tracer's. `moving_ms_*`: an image of moving hair, for
+// which light is computed again; `still_ms_*`: an image of hair at rest. `repeat`: the RMS
+// difference of the last image from the first, over the RMS of the first.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(CHARS, scene, 18) X(TEXT, way, 9) X(TEXT, bounces, 7)                                        \
@@ -64,9 +65,9 @@ typedef struct Row {
 } Row;
 static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
-// Of the cases of one way.
+// Sums over the cases of one way.
 typedef struct Sum {
-    Row row; // sums of numbers
+    Row row; // its numbers are sums
     int cases;
 } Sum;
 
@@ -76,12 +77,12 @@ typedef struct LightRun {
     Table table;
     LightCases cases;
     Sum sums[WAY_COUNT];
-    ImageSheet sheet; // of --picture
+    ImageSheet sheet; // for --picture
 } LightRun;
 
 // --- Drawing a case.
 
-// A case's scene with flags in turn.
+// Opens a case's scene with three sets of flags; later flags override earlier ones.
 static Result open_stage(LightStage *stage, const Gpu *gpu, const LightCase *lit,
                          const char *const flags[3], Error *error)
 {
@@ -125,7 +126,7 @@ static double difference(const Image *image, const float *first)
     return sqrt(off / all);
 }
 
-// The first image is what a run of one frame writes, and that is compared.
+// Compares the first image, which is the image that a run of one frame writes. Then measures times.
 static Result measure(LightStage *stage, const LightCase *lit, const Way *way, int frames, Row *row,
                       Error *error)
 {
@@ -154,7 +155,7 @@ static const char *raster_word(const BenchOptions *options)
     return params_find("raster")->choices[options->scheme.raster];
 }
 
-// The share of the tracer's coverage, which no way changes.
+// The coverage over the tracer's coverage. It is the same for all ways.
 static Result find_coverage(LightRun *run, const LightCase *lit, double *coverage, Error *error)
 {
     char raster[64];
@@ -171,7 +172,7 @@ static Result find_coverage(LightRun *run, const LightCase *lit, double *coverag
 
 // --- Bounds.
 
-// "worst" of two verdicts: broken before holds before none.
+// The worse of two verdicts: "broken" before "holds" before "".
 static const char *worse(const char *a, const char *b)
 {
     return strcmp(a, "broken") == 0 || !*b ? a : b;
@@ -236,7 +237,8 @@ static void add_to_sum(Sum *sum, const Row *row)
     }
 }
 
-// The means over the cases. The stated mean rel is that of all cases of a folder.
+// Adds the means over the cases. The bound of the mean rel is checked if all cases of a folder were
+// measured.
 static void add_mean(LightRun *run, int w)
 {
     const Way *way = &WAYS[w];
@@ -259,10 +261,11 @@ static void add_mean(LightRun *run, int w)
     table_add(&run->table, &row);
 }
 
-// --- The sheet of --picture: a row for each case, as it was (--before), by each way, and by the
-// tracer, all at one exposure.
+// --- The sheet of --picture. Each case has a row: the image of --before, each way, the path
+// tracer; all at one exposure.
 
-enum { PICTURE_LEVEL = 80, PICTURE_SHARE = 98 }; // %: of white; of the blocks with hair below that
+// In %: PICTURE_SHARE of the blocks with hair stay below PICTURE_LEVEL of white.
+enum { PICTURE_LEVEL = 80, PICTURE_SHARE = 98 };
 
 static int compare_numbers(const void *a, const void *b)
 {
@@ -270,7 +273,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// The factor that gives the tracer's bright blocks PICTURE_LEVEL.
+// The exposure factor that maps the tracer's bright blocks to PICTURE_LEVEL.
 static Result find_exposure(const LightCase *lit, double *exposure, Error *error)
 {
     int count = 0, all = lit->columns * lit->rows;
@@ -288,7 +291,7 @@ static Result find_exposure(const LightCase *lit, double *exposure, Error *error
     return RESULT_OK;
 }
 
-// Light times exposure as an sRGB image with its name.
+// Converts light times exposure to an sRGB image with a caption.
 static Result expose(const Image *light, double exposure, const char *name, Image *shown,
                      Error *error)
 {
@@ -322,7 +325,7 @@ static Result add_tile(LightRun *run, const LightCase *lit, const Image *light, 
     return result;
 }
 
-// The tracer's light between the blocks' middles, bilinear.
+// The tracer's light at a point, interpolated bilinearly between the centres of blocks.
 static double between(const LightCase *lit, LightTable table, double x, double y, int channel)
 {
     double sum = 0;
@@ -367,9 +370,9 @@ static Result add_before(LightRun *run, const LightCase *lit, Error *error)
     return result;
 }
 
-// --- All of it.
+// --- All cases.
 
-// Whether a way is asked for: by its name, all, or those that have bounds.
+// Whether to measure a way: it is named, or --way all, or without --way it has bounds.
 static bool is_wanted(const BenchOptions *options, const Way *way)
 {
     if (!options->ways) return !way->extra;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_BLOCKS = 2048 }; // in a row or column: images of 16384 px
+enum { MOST_BLOCKS = 2048 }; // in a row or column, for images of up to 16384 px
 
 static const char *const COLUMNS[LIGHT_TABLES][3] = {
     {"one_r", "one_g", "one_b"}, {"all_r", "all_g", "all_b"}, {"coverage", "coverage", "coverage"}};
@@ -30,7 +30,7 @@ static Result read_place(const Csv *csv, size_t line, const char *name, int *pla
     return RESULT_OK;
 }
 
-// The number of blocks in a row and in a column, of which each must have a line.
+// Finds the number of columns and rows of blocks. Each block must have a line.
 static Result find_size(LightCase *lit, const Csv *csv, Error *error)
 {
     for (size_t line = 0; line < csv->row_count; ++line) {
@@ -47,8 +47,8 @@ static Result find_size(LightCase *lit, const Csv *csv, Error *error)
     return RESULT_OK;
 }
 
-// One channel of a table, with light somewhere. The most that a block may have keeps squares
-// finite.
+// Reads one channel of a table; at least one block must have light. The upper limit of a block
+// keeps squares finite.
 static Result read_channel(LightCase *lit, const Csv *csv, LightTable table, int channel,
                            Error *error)
 {
@@ -123,7 +123,7 @@ static void destroy_case(LightCase *lit)
     *lit = (LightCase){0};
 }
 
-// Whether the list has the word; a list of NULL has all.
+// Whether the comma-separated list contains the word. NULL contains every word.
 static bool has_name(const char *names, const char *word)
 {
     for (const char *at = names; at; at = strchr(at, ',')) {
@@ -150,7 +150,7 @@ static Result read_found(LightCases *cases, const glob_t *found, const char *nam
     return RESULT_OK;
 }
 
-// That each name is that of a case.
+// Checks that each name is the name of a case.
 static Result check_names(const LightCases *cases, const char *folder, const char *names,
                           Error *error)
 {

@@ -8,8 +8,8 @@
 
 static const char USUAL[] = "--quiet --frames 1 --exposure 0 --tone-map none -o light.pfm";
 
-// A path-traced case names what its fibres let through; scenes of an older tractrix-render call it
-// the colour.
+// A path-traced case states the light that its fibres transmit. Scenes of an older tractrix-render
+// store it as the colour.
 static void take_transmission(Scene *scene)
 {
     const size_t color = (size_t)(params_find("color") - PARAM_TABLE);

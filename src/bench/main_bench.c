@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// tractrix-bench: accuracy of the tractrix and of solvers, speed of solvers and drawing, check of
-// all shaders.
+// tractrix-bench: measures the accuracy of the tractrix and of solvers, the speed of solvers and of
+// drawing, and compiles all shaders.
 #include "base/interrupt_install.h"
 #include "base/paths.h"
 #include "base/program.h"
@@ -35,8 +35,8 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
     return stress_search(gpu, &options, &arguments->output, stdout, error);
 }
 
-// --- Compiles every shader variant that the programs can ask for, with warnings as errors: a line
-// each; RESULT_FAILED with the first message if one fails, after all.
+// --- Compiles every shader variant that the programs can ask for, with warnings as errors. Prints
+// a line for each. If some fail, returns RESULT_FAILED with the first message after trying all.
 
 static void report(const char *what, Result result, const Error *why, Result *worst, FILE *stream,
                    Error *error)
@@ -47,7 +47,7 @@ static void report(const char *what, Result result, const Error *why, Result *wo
     *error = *why;
 }
 
-// A solver on four strands or, with params->followers, followers of them.
+// Makes a solver for four strands or, with params->followers, for followers of four strands.
 static Result try_hair(const Gpu *gpu, const SectionParams *params, const StrandsRecipe *recipe,
                        const Colliders *colliders, Error *error)
 {
@@ -76,11 +76,11 @@ static Result try_hair(const Gpu *gpu, const SectionParams *params, const Strand
     return result;
 }
 
-// What a solver's programs depend on.
+// The properties of hair that a solver's programs depend on.
 typedef struct SolverShape {
     uint32_t vertices;
     float style, style_of_tip;
-    float volume; // and the groom at rest
+    float volume; // > 0: --volume, and the groom is the rest pose
 } SolverShape;
 
 static Result try_solver(const Gpu *gpu, const SolverType *type, const char *variant,
@@ -99,12 +99,12 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
                                   .volume = shape->volume,
                                   .style_stiffness = 200,
                                   .clamped = style < 1 ? 1 : 2,
-                                  // Springs with bending and without.
+                                  // The style's springs with bending and without.
                                   .chain_bend = style < 1 ? 10 : 0};
     return try_hair(gpu, &params, &recipe, NULL, error);
 }
 
-// What pushes hair out of shapes, for the solver's kind of state.
+// Compiles the collision shaders for the kind of state that the solver has.
 static Result try_collide(const Gpu *gpu, const char *algo, const char *shapes, Error *error)
 {
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_RANDOM);
@@ -150,7 +150,8 @@ static Result try_inbetween(const Gpu *gpu, Error *error)
 
 static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
 {
-    // In registers and not, each mix of the style, also along the strand and of a groom at rest.
+    // With strands in registers and in memory; with each kind of style, including one that varies
+    // along the strand; with the groom as the rest pose.
     static const SolverShape shapes[] = {
         {8, 0.5f, 0.5f, 0},  {8, 0, 0, 0},        {8, 1, 1, 0},       {64, 0.5f, 0.5f, 0},
         {8, 0.9f, 0.3f, 1},  {64, 0.9f, 0.3f, 0}, {8, 0.4f, 0.4f, 1}, {64, 0.6f, 0.6f, 1},
@@ -171,7 +172,8 @@ static void try_solvers(const Gpu *gpu, Result *worst, FILE *stream, Error *erro
             }
 }
 
-// Loops over lights and shadow maps unrolled, for as many as scenes often have and for the most.
+// Loops over lights and shadow maps are unrolled. Compiles them for the numbers that scenes often
+// have, and for the largest.
 static Result try_light_counts(LookPrograms *programs, Error *error)
 {
     static const struct {
@@ -191,7 +193,7 @@ static Result try_light_counts(LookPrograms *programs, Error *error)
     return RESULT_OK;
 }
 
-// Every way that hair can look.
+// Compiles every combination of features that hair can be drawn with.
 static Result try_looks(Passes *passes, Error *error)
 {
     bool quads = passes->options->raster == RASTER_QUADS;
@@ -208,8 +210,9 @@ static Result try_looks(Passes *passes, Error *error)
                                       LOOK_STRAND,
                                       LOOK_SMOOTH,
                                       LOOK_SMOOTH | LOOK_PAINT};
+    // LOOK_GAUSS has no effect without LOOK_MARSCHNER.
     for (unsigned features = 0; features < LOOK_SHADOW_APPROX; ++features)
-        if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS) // which does not count alone
+        if ((features & (LOOK_MARSCHNER | LOOK_GAUSS)) != LOOK_GAUSS)
             TRY(look_programs_build(programs, features, error));
     for (size_t i = 0; i < sizeof others / sizeof *others; ++i)
         TRY(look_programs_build(programs, others[i], error));
@@ -217,7 +220,7 @@ static Result try_looks(Passes *passes, Error *error)
     return try_light_counts(programs, error);
 }
 
-// What the options' shadows and floor are drawn by, and culling.
+// Compiles the shaders for shadows, floor and culling with these options.
 static Result try_shadows(Passes *passes, Error *error)
 {
     const RendererOptions *options = passes->options;
@@ -268,7 +271,7 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
     return result;
 }
 
-// The table of marschner shading.
+// Computes the table of Marschner shading.
 static void try_tables(Result *worst, FILE *stream, Error *error)
 {
     ScatterTables tables = {0};
@@ -384,7 +387,7 @@ static const struct {
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 
-// No output may be a file that is read, or another output.
+// Checks that no output overwrites an input or another output.
 static Result check_paths(const BenchOptions *options, Error *error)
 {
     const PathUse own[] = {{"--csv", options->output.csv, PATH_WRITTEN, NULL},
@@ -427,7 +430,8 @@ static Result run_command(BenchOptions *options, Error *error)
     const TableOutput *output = &options->output;
     if (COMMANDS[command].run == run_shaders && (output->csv || output->json || output->html))
         return error_set(error, RESULT_USAGE, "shaders: has no rows for --csv, --json or --html");
-    // What Mesa finds in its cache it does not compile, and warns of nothing.
+    // Mesa does not compile shaders that it finds in its cache, so it would print no warnings for
+    // them.
     if (COMMANDS[command].run == run_shaders) setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     TRY(gpu_create(&gpu, &options->gpu, error));
     fprintf(stderr, "%s, OpenGL %s (%s)\n", quote(gpu.renderer).text, quote(gpu.version).text,

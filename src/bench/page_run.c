@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command "page" (bench_commands.h): rows of CSV files as a page.
+// The command "page" (bench_commands.h): shows rows of CSV files as an HTML page.
 #include "base/csv.h"
 #include "bench/bench_commands.h"
 #include "bench/page.h"
@@ -20,7 +20,8 @@ static bool is_number(const char *text, double *value)
     return end != text && !*end && isfinite(*value);
 }
 
-// The columns of TABLE's rows that name machine and build; a commit may look like a number.
+// Whether a column names the machine or the build. These columns stay text, because a commit may
+// look like a number.
 static bool is_text(const char *name)
 {
     static const char *const NAMES[] = {"renderer", "gl_version", "cpu", "version", "commit", NULL};
@@ -29,7 +30,7 @@ static bool is_text(const char *name)
     return *at;
 }
 
-// Which of the page's columns has this name; it is added if none has.
+// The index of the page's column with this name; a new column is added if there is none.
 static size_t find_column(Rows *rows, const char *name)
 {
     size_t count = json_array_size(rows->columns), i = 0;
@@ -42,7 +43,7 @@ static size_t find_column(Rows *rows, const char *name)
     return i;
 }
 
-// A column has numbers if every field of it is one, or empty.
+// A column is numeric if each of its fields is a number or empty.
 static void look_at_column(json_t *column, const Csv *csv, size_t place)
 {
     double value;
@@ -82,7 +83,7 @@ static Result add_file(Rows *rows, const char *path, Error *error)
     return result;
 }
 
-// Texts become numbers in columns that have only those; every row gets all columns.
+// Converts texts to numbers in numeric columns, and adds the missing columns to each row.
 static void finish_rows(Rows *rows)
 {
     size_t count = json_array_size(rows->columns);

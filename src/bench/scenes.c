@@ -9,8 +9,8 @@
 
 enum { MOST_SECTIONS = 2, FPS = 60, LATEST_SLEEP_S = 60, RINGS = 36 };
 
-// A section that steps for ever, one that falls asleep (it may be off by its whole length), one
-// that has no solver.
+// Whether a section moves in every frame, falls asleep (the positions may be wrong by the strand
+// length), or has no solver.
 typedef enum Rest { MOVES, SLEEPS, STATIC } Rest;
 
 typedef struct SceneKind {
@@ -19,8 +19,8 @@ typedef struct SceneKind {
     Rest rest[MOST_SECTIONS];
     int followers;
     FollowMode mode;
-    const char *colliders; // as --colliders; NULL: none
-    bool mesh;             // collides with the sphere that the hair grows on, as a mesh
+    const char *colliders; // value of --colliders; NULL for none
+    bool mesh;             // collide with the sphere that the hair grows on, as a mesh
 } SceneKind;
 
 #define SPHERE "sphere:0,0,0,0.1"
@@ -81,7 +81,7 @@ static double frame_ms(Simulation *simulation)
     return clock_ms() - begin;
 }
 
-// Frames, once all that may sleep does.
+// Measures frames after all hair that can fall asleep sleeps.
 static Result measure_frames(Row *row, Simulation *simulation, const SceneKind *kind,
                              const BenchOptions *options, Error *error)
 {

@@ -18,14 +18,15 @@
 #include <string.h>
 #include <unistd.h>
 
-// ms: of what moves the hair one step further and writes the positions that are drawn; solve_ms: of
-// its part without the positions; draw_ms: drawing and reading back. `hair`: without folders;
-// `vertices`: of the first strand; `threads`: of the driver or the program, 0: as many as it likes;
-// `thesis_ms`, `bound_ms`: what the thesis states for its GPU, what we state; `bytes`: of the
-// buffers that a step and its pose use, each once a way; `exponent`: of a fit over a part's rows;
-// `first_ms`: of the first step, with shader compilation unless the driver caches it; `process_ms`:
-// wall time of a process of its own; `off`: from the GPU's strands, RMS over the length; `waited`:
-// the share of the steps' time in which the program's threads waited for a processor.
+// ms: one step of the hair and the computation of drawn positions. solve_ms: the step without drawn
+// positions. draw_ms: drawing and reading back. `hair`: file name without folders. `vertices`: of
+// the first strand. `threads`: of the driver or the program, 0: their default. `thesis_ms`: the
+// time that the thesis states for its GPU; `bound_ms`: the time that our docs state. `bytes`: size
+// of the buffers that a step and its pose use, counted once for reading and once for writing.
+// `exponent`: of a power law fitted to the rows of a part. `first_ms`: the first step, with shader
+// compilation unless the driver has cached it. `process_ms`: wall time of a separate process.
+// `off`: RMS distance from the GPU's strands, over the length. `waited`: share of the steps' time
+// in which threads of this program waited for a processor.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(TEXT, part, 8) X(CHARS, hair, 20) X(TEXT, algo, 9) X(TEXT, variant, 9) X(TEXT, settings, 0)  \
@@ -41,9 +42,9 @@
 
 typedef struct Row {
     ROW(TABLE_FIELD)
-    const char *set, *file; // where the hair comes from; both NULL: made by the part itself
+    const char *set, *file; // the hair's source; both NULL: the part makes it
     Method method;
-    double off_bound; // what is stated of `off`
+    double off_bound; // the bound of `off`
 } Row;
 static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
@@ -53,12 +54,12 @@ typedef struct Speed {
     Table table;
     Method methods[METHODS_MOST];
     int method_count;
-    double bandwidth; // of the memory, GB/s; measured once
+    double bandwidth; // GB/s of the memory; measured once
 } Speed;
 
 // --- Rows.
 
-// Of a part and, unless NULL, of hair from a set or a file, or of its own name.
+// A row of a part. Its hair comes from a set or a file or, if both are NULL, has a name of its own.
 static Row row_of(const char *part, const char *set, const char *file, const char *name)
 {
     Row row = {.part = part, .set = set, .file = file, .method = {"", "", ""}, .remark = ""};
@@ -86,7 +87,7 @@ static void count_strands(Row *row, const Strands *strands)
     row->vertices = strands->first[1];
 }
 
-// Checks the bound, and adds the row with what follows from it and the command that repeats it.
+// Checks the bound and adds the row, with derived columns and the command that repeats it.
 static void add_row(Speed *speed, Row *row)
 {
     char method[256] = "", hair[128] = "", size[64] = "";
@@ -115,10 +116,11 @@ static void add_row(Speed *speed, Row *row)
     table_add(&speed->table, row);
 }
 
-// --- A step, in a scene of one section as the command line would make it.
+// --- One step, in a scene with one section, as the command line would make it.
 
-// Each buffer of the solver's state is read and written; so are the drawn positions, unless they
-// are such a buffer; the style is read. What a solver touches more often, or beside, is not in it.
+// Counts each buffer of the solver's state as read and written, the drawn positions as written
+// (unless they are part of the state), and the style as read. Repeated accesses and other buffers
+// are not counted.
 static long count_bytes(const SimulationSection *section)
 {
     long bytes = 0;
@@ -212,7 +214,7 @@ static Result measure_drawing(Row *row, Simulation *simulation, Scene *scene,
     return result;
 }
 
-// Steps and, with a size, images of row->method on the strands.
+// Measures steps of row->method on the strands and, if a size is set, images.
 static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const BenchOptions *options,
                       Error *error)
 {
@@ -224,7 +226,7 @@ static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const Be
     gpu_timer_create(&timer, false, true);
     Result result = trial_params(&params, &row->method, "", error);
     THEN(result, scene_create_as(&scene, &(Presets){.look = "plain"}, error));
-    params.sleep = 0; // every step is one
+    params.sleep = 0; // hair that sleeps would take no time
     params.followers = (AutoInt){.value = 0};
     THEN(result, scene_add_section(&scene, row->hair, &params, error));
     params_destroy_section(&params);
@@ -239,7 +241,7 @@ static Result measure(Row *row, const Gpu *gpu, const Strands *strands, const Be
     return result;
 }
 
-// --- The hair that is asked for.
+// --- The hair to measure.
 
 typedef Result UseHair(Speed *speed, Row *row, const Strands *strands, Error *error);
 
@@ -259,7 +261,7 @@ static Result use_methods(Speed *speed, const char *part, const char *set, const
     return result;
 }
 
-// --set, --tfx, or all of the thesis's sets; and the files that are named.
+// Calls `use` for --set and --tfx or, without both, for all sets of the thesis and the named files.
 static Result for_each(Speed *speed, const char *part, UseHair *use, Error *error)
 {
     static const char *const sets[] = {"1k16", "1k32", "10k16", "10k32"};
@@ -274,9 +276,10 @@ static Result for_each(Speed *speed, const char *part, UseHair *use, Error *erro
     return RESULT_OK;
 }
 
-// Table 4.2 of the thesis: ms a step on a GTX 1080 Ti. Its Mohawk and Short are one scene, which is
-// not among these sets. And what is stated for the solvers' default forms on llvmpipe with two
-// cores, of the least ms, since what else runs on the machine only adds.
+// thesis_ms: table 4.2 of the thesis, ms a step on a GTX 1080 Ti. Its Mohawk and Short are one
+// scene, which is not among these sets. bound_ms: the bound of the least ms for the default
+// variants on llvmpipe with two cores. The least is used because other load of the machine only
+// adds time.
 static const struct {
     const char *set, *algo;
     double thesis_ms, bound_ms; // 0: nothing
@@ -303,7 +306,7 @@ static Result measure_set(Speed *speed, Row *row, const Strands *strands, Error 
     return RESULT_OK;
 }
 
-// --- What the processor could do: memory, and split in C.
+// --- What the processor can do: memory bandwidth, and split in C.
 
 static Result run_memory(Speed *speed, Error *error)
 {
@@ -322,7 +325,8 @@ static Result run_memory(Speed *speed, Error *error)
 
 #define RATE 60.0
 
-// Steps both for a second from rest: RMS over the length, of all particles but roots.
+// Simulates one second from rest with both programs. `off`: the RMS distance over the length of all
+// particles but roots.
 static Result compare_split(const Gpu *gpu, const Strands *strands, CpuSplit *split,
                             CpuSplitForm form, double *off, Error *error)
 {
@@ -389,11 +393,11 @@ static Result measure_split(Speed *speed, Row *row, const Strands *strands, Erro
     return measure_form(speed, row, strands, CPU_SPLIT_LANES, error);
 }
 
-// --- How times grow.
+// --- Growth of times with the size of the hair.
 
 enum { MOST_SIZES = 8 };
 
-// As many steps as take half a second or so, by what a particle costs; at least 3.
+// Reduces the number of steps so that a row takes about half a second, but to no fewer than 3.
 static BenchOptions fewer_steps(const Speed *speed, uint64_t particles)
 {
     BenchOptions options = *speed->options;
@@ -404,8 +408,8 @@ static BenchOptions fewer_steps(const Speed *speed, uint64_t particles)
     return options;
 }
 
-// A row for each size {strands, vertices of each} and method, then the exponent of least time by
-// the size's number `by` for each method.
+// Adds a row for each method and size {strands, vertices of each}, and for each method the exponent
+// of the least time as a power of sizes[i][by].
 static Result measure_growth(Speed *speed, const char *part, const uint32_t (*sizes)[2],
                              int size_count, int by, Error *error)
 {
@@ -451,7 +455,7 @@ static Result run_vertices(Speed *speed, Error *error)
     return measure_growth(speed, "vertices", sizes, 5, 1, error);
 }
 
-// --- In processes of their own.
+// --- Measurements in separate processes.
 
 static Row child_row(const Speed *speed, const char *part, const char *set, int method)
 {
@@ -462,7 +466,7 @@ static Row child_row(const Speed *speed, const char *part, const char *set, int 
     return row;
 }
 
-// Runs part "sets" for the row's method and hair with the variable set, and takes its times over.
+// Runs part "sets" in a process with the environment variable set, and copies its times to the row.
 static Result measure_child(Row *row, const BenchOptions *options, int steps, int warm_up,
                             const char *variable, const char *value, Error *error)
 {
@@ -519,7 +523,7 @@ static Result run_start(Speed *speed, Error *error)
             Row row = child_row(speed, "start", "1k16", m);
             result =
                 measure_child(&row, speed->options, 1, 0, "MESA_SHADER_CACHE_DIR", cache, error);
-            set_times(&row, table_times(NULL, 0)); // of one step: says nothing
+            set_times(&row, table_times(NULL, 0)); // the time of a single step is not meaningful
             row.remark = warm ? "warm" : "cold";
             if (result == RESULT_OK) add_row(speed, &row);
         }
@@ -534,9 +538,9 @@ static Result run_start(Speed *speed, Error *error)
 static const struct {
     const char *name;
     Result (*run)(Speed *speed, Error *error);
-    UseHair *use; // of all hair, in place of `run`
+    UseHair *use; // called for all hair, instead of `run`
 } PARTS[] = {
-    {"memory", run_memory, NULL}, // first: the others have shares of its bandwidth
+    {"memory", run_memory, NULL}, // must be first: other parts divide by its bandwidth
     {"sets", NULL, measure_set},    {"c", NULL, measure_split},
     {"strands", run_strands, NULL}, {"vertices", run_vertices, NULL},
     {"threads", run_threads, NULL}, {"start", run_start, NULL},
@@ -547,7 +551,7 @@ Result speed_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     Speed speed = {.gpu = gpu, .options = options};
     const char *names[PART_COUNT + 1] = {NULL};
-    // Hair that is named without a part is only measured itself.
+    // If hair is named without a part, only part "sets" runs.
     bool sets = !options->parts && (options->set || options->tfx);
     for (int i = 0; i < PART_COUNT; ++i) names[i] = PARTS[i].name;
     TRY(bench_options_check_parts(options, names, error));

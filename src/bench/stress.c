@@ -9,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-// A form's sum, a case that failed, or the smallest that such a one was made to. `rule`: that was
-// broken; `set`, `strand`: -1: it is no strand of a set; `steps`: of the case; `at`: the first that
-// broke it.
+// A row is the sum of a form (a solver's variant), a case that failed, or the smallest failing case
+// that it was shrunk to. `rule`: the broken rule; `set`, `strand`: -1 if the case is not a strand
+// of a set; `steps`: steps of the case; `at`: the first step that broke the rule.
 // clang-format off
 #define ROW(X)                                                                                     \
     X(TEXT, what, 0) X(TEXT, algo, 0) X(TEXT, variant, 0) X(WHOLE, cases, 0) X(WHOLE, sets, 0)     \
@@ -27,8 +27,8 @@ typedef struct Row {
 static const Column COLUMNS[] = {ROW(TABLE_COLUMN){"case", COLUMN_CHARS, offsetof(Row, text), 0},
                                  TABLE_COLUMN(CHARS, command, 0)};
 
-// Of the failures of a set only the worst of each rule is made smaller, and so many of a form; all
-// are named.
+// In each set only the worst failure of each rule is shrunk, at most MOST_SHRUNK for a form. All
+// failures are printed.
 enum { MOST_SHRUNK = 8, MOST_FORMS = 64 };
 
 StressOptions stress_options_default(void)
@@ -36,7 +36,7 @@ StressOptions stress_options_default(void)
     return (StressOptions){.cases = 5000, .steps = 10000, .seed = 1, .allowed = 1, .shrinks = true};
 }
 
-// What happened to a solver's form.
+// Results of a form.
 typedef struct Tally {
     const char *algo, *variant;
     int cases, sets, failures, shrunk;
@@ -50,9 +50,9 @@ typedef struct Bench {
     const Gpu *gpu;
     const StressOptions *options;
     FILE *stream;
-    Table table; // of the files
+    Table table; // for --csv, --json and --html
     Progress progress;
-    int sets; // of each form
+    int sets; // number of sets for each form
     int sets_done, cases_done, failures;
 } Bench;
 
@@ -65,7 +65,8 @@ static int first_step(const StressVerdict *verdict, StressRule *rule)
     return first;
 }
 
-// Whether the case alone breaks the rule; *steps: when.
+// Whether the case breaks the rule when it runs alone. *steps: number of steps to run; set to the
+// step of the failure if later steps are not needed.
 static bool breaks(Bench *bench, const StressCase *stress, StressRule rule, int *steps)
 {
     StressVerdict verdict;
@@ -74,7 +75,8 @@ static bool breaks(Bench *bench, const StressCase *stress, StressRule rule, int 
                                             bench->options->allowed, &unused) != RESULT_OK)
         return false;
     if (!verdict.first[rule]) return false;
-    // The head rests in the second half, and strands must lie still at the end.
+    // These rules need all steps: the head rests in the second half, and STRESS_REST is checked at
+    // the end.
     if (rule != STRESS_REST && stress->value[STRESS_jump] == 0 &&
         stress->value[STRESS_shake] == 0 && stress->value[STRESS_spin] == 0)
         *steps = verdict.first[rule];
@@ -83,7 +85,7 @@ static bool breaks(Bench *bench, const StressCase *stress, StressRule rule, int 
 
 enum { MOST_PASSES = 3 };
 
-// Tries all simpler cases, over again where one breaks the rule, too.
+// Tries all simpler cases, and repeats this as long as one of them still breaks the rule.
 static void shrink(Bench *bench, StressCase *stress, StressRule rule, int *steps)
 {
     bool smaller = true;
@@ -109,7 +111,7 @@ static void set_worst(Row *row, const double worst[STRESS_RULES])
     row->worst_rest = worst[STRESS_REST];
 }
 
-// The row of a case, with the command that repeats it.
+// Makes the row of a case, with the command that repeats it.
 static Row line_of_case(const Bench *bench, const char *what, const StressCase *stress,
                         const StressVerdict *verdict, StressRule rule, int steps)
 {
@@ -141,7 +143,7 @@ static void print_case(Bench *bench, const StressCase *stress, const StressVerdi
     table_add(&bench->table, &line);
 }
 
-// Makes a case that failed smaller as long as it breaks its first broken rule, alone.
+// Shrinks a failing case, run alone, as long as it breaks the first rule that it broke.
 static void report_smallest(Bench *bench, const StressCase *stress, const StressVerdict *found)
 {
     StressRule rule = STRESS_FINITE;
@@ -163,7 +165,7 @@ static void report_smallest(Bench *bench, const StressCase *stress, const Stress
     print_case(bench, &smallest, &verdict, rule, steps);
 }
 
-// Counts a set's strands, names all that failed, and reports the worst by each rule.
+// Counts a set's strands, prints all failures, and reports the worst failure of each rule.
 static void count(Bench *bench, Tally *tally, const StressCase *strands,
                   const StressVerdict *verdicts, int strand_count)
 {
@@ -188,7 +190,7 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
                     tally->sets, s, line.rule, line.at, line.of_allowed, line.text);
             table_add(&bench->table, &line);
         }
-        // The worst breaks the rule by more than others, or else sooner.
+        // The worst failure exceeds its bound most; among equal ones it is the earliest.
         if (worst[rule] < 0 || found->worst[rule] > most->worst[rule] ||
             (found->worst[rule] == most->worst[rule] && found->first[rule] < most->first[rule]))
             worst[rule] = s;
@@ -200,7 +202,8 @@ static void count(Bench *bench, Tally *tally, const StressCase *strands,
     tally->cases += strand_count;
 }
 
-// One set: its circumstances from the seed and its number, or the case that is asked for alone.
+// Runs one set, with circumstances from the seed and the set's number, or the single case of the
+// command line.
 static Result run_set(Bench *bench, Tally *tally, int set, Error *error)
 {
     const StressOptions *options = bench->options;
@@ -266,7 +269,7 @@ static Result run_form(Bench *bench, const char *algo, const char *variant, Erro
     return result;
 }
 
-// The forms of solvers that are asked for: [count] of algo and variant.
+// Lists the forms to test: [count] of algo and variant.
 static int list_forms(const StressOptions *options, const char *forms[MOST_FORMS][2])
 {
     int count = 0;
@@ -306,7 +309,7 @@ Result stress_search(const Gpu *gpu, const StressOptions *options, const TableOu
             bench.cases_done, options->steps, count, (clock_ms() - begun) / 1000, bench.failures);
     if (bench.failures)
         THEN(result, error_set(error, RESULT_FAILED, "%d cases failed", bench.failures));
-    // The files have what was done until an interruption, too.
+    // After an interruption the files have the results so far.
     Error unwritten;
     Result closed = table_close(&bench.table, RESULT_OK, &unwritten);
     return closed == RESULT_OK ? result : error_set(error, closed, "%s", unwritten.text);

@@ -12,9 +12,10 @@
 
 enum { LENGTHS = 1, ENERGY = 2, REST = 4 };
 
-// What a solver does not promise, and why; by how much of S^2 its energy may rise otherwise.
+// The promises that a solver does not make and why. `rise`: the share of S^2 by which its energy
+// may rise, if USUAL_RISE is too small.
 static const struct {
-    const char *algo, *variant; // variant NULL: all
+    const char *algo, *variant; // variant NULL: all variants
     unsigned lacks;
     double rise;
     const char *why;
@@ -31,16 +32,17 @@ static const struct {
 static const double USUAL_RISE = 0.02;
 
 static const double LENGTH_ERROR = 1e-5;
-static const double REST_MOVE =
-    3e-3; // of the length in a step: the tremor that docs/solvers.md has
+// Movement in a step over the length: the tremor that docs/solvers.md states.
+static const double REST_MOVE = 3e-3;
 
-static const double PATIENCE = 30; // of each time constant, until a strand must lie still
-static const double CALM = 2; // stability number (simulation.h) up to which solvers come to rest
+static const double PATIENCE = 30; // a strand must lie still after this many time constants
+static const double CALM = 2; // solvers come to rest up to this stability number (simulation.h)
 
-static const double TRESSFX_RESOLVED = 4096; // roundings
-static const double MOST_FLUTTER = 0.5;      // the smallest at which a strand was found to: 0.52
+static const double TRESSFX_RESOLVED = 4096; // segment length in rounding errors
+static const double MOST_FLUTTER = 0.5;      // the smallest number seen with flutter is 0.52
 
-static const double NOISE_STEPS = 8; // steps whose rounding may add up, beside a random walk's
+// The rounding errors of this many steps may add up; the others grow like a random walk.
+static const double NOISE_STEPS = 8;
 
 static bool is(const StressCase *stress, const char *algo)
 {
@@ -52,13 +54,14 @@ static double odds_of(const SectionParams *params)
     return (double)params->style / fmax(1 - (double)params->style, 1e-6);
 }
 
-// Springs towards the style: 4 k L^2 and 2 pi b L for each radian.
+// The energy that springs towards the style can add to S^2 for each radian that the style turns:
+// 4 k L^2, for angular springs 2 pi b L (stress_bound.h).
 static double turned_springs(const StressCase *stress, const SectionParams *params)
 {
     double odds = odds_of(params), length = stress->value[STRESS_length],
            square = 4 * length * length;
     double bend = 2 * PI * length * odds;
-    if (is(stress, "split")) return 0; // its style is drawn only
+    if (is(stress, "split")) return 0; // its style acts on drawn strands only
     if (is(stress, "spring")) return bend * (double)params->spring_angular;
     if (is(stress, "tressfx")) {
         double passes = (double)params->tressfx_local_constraints_iterations / 2;
@@ -68,8 +71,8 @@ static double turned_springs(const StressCase *stress, const SectionParams *para
     return springs + (is(stress, "chain") ? bend * (double)params->chain_bend : 0);
 }
 
-// Whether the parameters lie in the range in which docs/solver_derivations.md says that `tressfx
-// steady` gains no energy, with TressFX's fixed constants unchanged.
+// Whether the parameters are in the range in which `tressfx steady` gains no energy according to
+// docs/solver_derivations.md, with TressFX's other constants unchanged.
 static bool is_stable_tressfx(const StressCase *stress, const SectionParams *params)
 {
     double dt = stress->value[STRESS_dt];
@@ -78,8 +81,8 @@ static bool is_stable_tressfx(const StressCase *stress, const SectionParams *par
            params->tressfx_local_share <= 0.5f && params->tressfx_local_max <= 0.95f;
 }
 
-// F: a strand's weight over the stiffness of its joints (stress_bound.h), in TressFX's two passes a
-// frame, which `steady` keeps to.
+// F: a strand's weight over the stiffness of its joints (stress_bound.h). TressFX makes two passes
+// a frame; `steady` has the stiffness of two passes, too.
 static double flutter_number(const StressCase *stress, const SectionParams *params, double g)
 {
     double k = fmin((double)params->tressfx_local_constraint_stiffness,
@@ -98,9 +101,10 @@ static void apply_promises(StressBound *bound, const StressCase *stress,
 {
     unsigned lacks = 0;
     bound->rise = USUAL_RISE;
-    // Shorter segments have no certain direction; TressFX's levers make much of that.
+    // Shorter segments have no certain direction because of rounding. TressFX amplifies such errors
+    // along the strand.
     bound->resolved = is(stress, "tressfx") ? TRESSFX_RESOLVED : 64;
-    // What rounding turns a short segment by, by that it turns all behind it.
+    // In tressfx, a rounding error that turns a short segment turns all segments behind it.
     bound->rest_resolved = is(stress, "tressfx") ? TRESSFX_RESOLVED : 0;
     for (size_t i = 0; i < sizeof EXCEPTIONS / sizeof *EXCEPTIONS; ++i)
         if (strcmp(EXCEPTIONS[i].algo, stress->algo) == 0 &&
@@ -109,14 +113,17 @@ static void apply_promises(StressBound *bound, const StressCase *stress,
             if (EXCEPTIONS[i].rise > 0) bound->rise = EXCEPTIONS[i].rise;
         }
     bool elastic = is(stress, "spring") || is(stress, "rope");
-    if (elastic) lacks |= params->stretch_drawn ? LENGTHS : ENERGY; // which it draws
+    // With stretch_drawn the drawn lengths change. Without it the drawn motion is not the simulated
+    // motion, whose energy is bounded.
+    if (elastic) lacks |= params->stretch_drawn ? LENGTHS : ENERGY;
     if (is(stress, "tressfx") && !is_stable_tressfx(stress, params)) lacks |= ENERGY | REST;
     if (lacks & ENERGY) bound->rise = -1;
     bound->length_error = lacks & LENGTHS ? 0 : LENGTH_ERROR;
     bound->rest_move = rests && !(lacks & REST) ? REST_MOVE * bound->length : 0;
 }
 
-// What is felt of gravity, m/s^2, at `turned` rad of the head: a groom holds its own part.
+// The gravity that acts on the strand in m/s^2, with the head turned by move->turned: gravity minus
+// the part that the groom holds.
 static void find_felt(const StressBound *bound, const StressMove *move, double felt[3])
 {
     const double *gravity = move->gravity;
@@ -132,7 +139,8 @@ static void find_felt(const StressBound *bound, const StressMove *move, double f
     felt[2] = bound->share * (gravity[2] - bound->held * held[2]);
 }
 
-// What the groom holds, and how strong what is left can be.
+// The share of gravity that the groom holds, and the upper limit g of the gravity that acts on the
+// strand.
 static void find_held(StressBound *bound, const StressCase *stress, const SectionParams *params)
 {
     const double *value = stress->value;
@@ -146,7 +154,8 @@ static void find_held(StressBound *bound, const StressCase *stress, const Sectio
     bound->g = bound->share * value[STRESS_gravity] * most;
 }
 
-// Whether what drag takes must have ended in the half of the steps in which the head rests.
+// Whether drag must have stopped the strand within the second half of the steps, in which the head
+// rests.
 static bool must_rest(const StressCase *stress, const StressBound *bound, int steps)
 {
     double time = bound->step_s * steps / 2, gravity = stress->value[STRESS_gravity];
@@ -154,7 +163,8 @@ static bool must_rest(const StressCase *stress, const StressBound *bound, int st
     if (stress->value[STRESS_gust] > 0 && bound->wind > 0) return false;
     if (!(bound->drag > 0) || !(time > PATIENCE * 2 / bound->drag)) return false;
     if (g > 0) return time > PATIENCE * bound->drag * bound->length / g;
-    // Only springs pull: 2L e^{-y N} is left after N steps of a share y, 2 L/(e N) a step at most.
+    // Without gravity and wind only springs pull. After N steps, each of which removes a share y,
+    // 2 L e^{-y N} is left, so a step moves by at most 2 L/(e N).
     return bound->held > 0 && steps / 2 > 2 / (exp(1) * REST_MOVE);
 }
 
@@ -168,10 +178,10 @@ StressBound stress_bound_create(const StressCase *stress, const SectionParams *p
         .wind = stress->value[STRESS_wind] * (1 + stress->value[STRESS_gust]) / cos(spread),
         .length = stress->value[STRESS_length],
         .stiffness = turned_springs(stress, params),
-        // What a jerk of the root gives to a strand, over its change of velocity, in that step
-        // only. Where it is by tens of links, chain's corrections of the lengths overshoot. In dftl
-        // no particle moves by more than its leader, and the root by the jerk; a slowed one that is
-        // thrown about its leader comes out there all the same.
+        // The velocity that a strand gains in the step of a jerk, over the root's change of
+        // velocity. With jerks of tens of segments, chain's length corrections overshoot. In dftl
+        // no particle moves farther than the particle before it, and the root moves by the jerk;
+        // but a slow particle that is thrown about the one before it can gain as much again.
         .jerk = is(stress, "chain")  ? 1.5
                 : is(stress, "dftl") ? 2
                                      : 1,
@@ -183,19 +193,19 @@ StressBound stress_bound_create(const StressCase *stress, const SectionParams *p
                                                                   : 1,
     };
     find_held(&bound, stress, params);
-    if (is(stress, "tressfx")) // which has more that makes hair go with the air
+    if (is(stress, "tressfx")) // its damping acts like additional drag
         bound.drag += (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
     double g = bound.g + bound.drag * bound.wind, links = stress->value[STRESS_n] - 1;
     bound.rest_shortest = bound.step_s * bound.step_s * g * links / (CALM * CALM);
     apply_promises(&bound, stress, params, must_rest(stress, &bound, steps));
     if (bound.rise >= 0 || bound.rest_move > 0)
         bound.flutter = flutter_number(stress, params, bound.g);
-    // Damping by a share in each step is drag of some strength.
+    // Damping by a share in each step acts like drag of unknown strength.
     if (is(stress, "rope") && params->rope_damping > 0) bound.drag = INFINITY;
     return bound;
 }
 
-// Takes into account how what is felt of gravity has changed.
+// Adds up the changes of the gravity that acts on the strand.
 static void step_gravity(StressBound *bound, const StressMove *move)
 {
     Double3 felt, change;
@@ -227,7 +237,8 @@ void stress_bound_step(StressBound *bound, const StressMove *move)
     bound->steps += 1;
     bound->turned += bound->stiffness * angle;
     bound->turning = fmax(bound->turning, rate * bound->length);
-    // The axis of a warp's turn may be another one in each step.
+    // The axis of a warp's rotation may change in each step, so two steps' rates are added instead
+    // of subtracted.
     bound->spun += fabs(head - bound->rate) + warp + bound->warp + rate * fmin(angle, 2);
     bound->rate = head;
     bound->warp = warp;
@@ -239,7 +250,7 @@ void stress_bound_step(StressBound *bound, const StressMove *move)
 
 void stress_bound_fill(const StressBound *bound, bool last, StressParams *params)
 {
-    const double most = 1e18; // float32 squares it
+    const double most = 1e18; // its square must be finite in float32
     double overshoot = (bound->jerk - 1) * bound->changed;
     params->per_dt = (float)(1 / bound->step_s);
     params->kicks = (float)fmin(bound->kicks + overshoot + bound->turning, most);

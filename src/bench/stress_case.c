@@ -13,8 +13,8 @@
 
 // --- Fields.
 
-// The last two are of parameters: WHOLE_LOG: evenly in the logarithm of 1 + a whole number; STYLE:
-// 0, 0.5 and 1 often.
+// How random values of a field are distributed. ZERO: logarithmic, often 0. WHOLE_LOG: even in the
+// logarithm of 1 + a whole number. STYLE: often 0, 0.5 or 1. The last two are for parameters.
 typedef enum Spread { EVEN, LOG, ZERO, WHOLE, WHOLE_LOG, STYLE } Spread;
 
 typedef struct Field {
@@ -22,7 +22,7 @@ typedef struct Field {
     double plain, low, high;
     Spread spread;
     double likely;
-    const ParamInfo *info; // NULL: a circumstance
+    const ParamInfo *info; // NULL for a circumstance
 } Field;
 
 static const Field CIRCUMSTANCES[] = {
@@ -32,20 +32,20 @@ static const Field CIRCUMSTANCES[] = {
 #undef STRESS_ROW
 };
 
-// Parameters that are tried in another way than what find_param makes of their kind and range.
+// Parameters with other distributions than find_param derives from their kind and range.
 static const struct {
     const char *name;
     double low, high;
     Spread spread;
     double likely;
 } SPECIAL[] = {
-    {"drag", 1e-3, 1e4, ZERO, 0.5}, // beyond, hair is the air's
+    {"drag", 1e-3, 1e4, ZERO, 0.5}, // with more drag, hair moves exactly with the air
     {"style", 0, 1, STYLE, 0.5},
     {"rest", REST_GROOM, REST_HANGING, WHOLE, 1},
-    {"style_stiffness", 1, 1e9, ZERO, 0.3}, // softer ones are as none
+    {"style_stiffness", 1, 1e9, ZERO, 0.3}, // softer springs have no effect
     {"chain_bend", 1, 1e6, ZERO, 0.4},
-    {"rope_iterations", 1, 100, WHOLE_LOG, 0.3}, // each costs as much as the first
-    {"rope_compliance", 1e-9, 1e6, ZERO, 0.3},   // what is stiff is small
+    {"rope_iterations", 1, 100, WHOLE_LOG, 0.3}, // each iteration takes the same time
+    {"rope_compliance", 1e-9, 1e6, ZERO, 0.3},   // small values are stiff
     {"stretch_drawn", 0, 1, WHOLE, 1},
 };
 
@@ -57,8 +57,8 @@ static double default_of(const ParamInfo *info)
     return strtod(info->default_text, NULL);
 }
 
-// How a parameter is tried: within its documented range, whose low end is a billionth of the high
-// one where that is 0.
+// The distribution of a parameter: within its documented range. If that begins at 0, the
+// logarithmic part begins at a billionth of its end.
 static Field find_param(const ParamInfo *info)
 {
     Field field = {info->name, default_of(info), info->minimum, info->maximum, EVEN, 0.2, info};
@@ -83,7 +83,7 @@ typedef struct Fields {
     int count;
 } Fields;
 
-// All fields; params.def in the form that is needed here, made once.
+// All fields. Built from params.def at the first call.
 static const Fields *list_fields(void)
 {
     static Fields all;
@@ -104,7 +104,7 @@ static bool applies(const Field *field, const StressCase *stress)
 {
     if (!field->info) return true;
     bool refused = strcmp(field->name, "rope_compliance") == 0 &&
-                   strcmp(stress->variant, "xpbd") != 0; // by the other form of rope
+                   strcmp(stress->variant, "xpbd") != 0; // the other variant of rope refuses it
     return !refused && params_owned_by(field->info, stress->algo);
 }
 
@@ -138,7 +138,7 @@ StressCase stress_case_plain(const char *algo, const char *variant)
     return stress;
 }
 
-// To five digits, so that the text is the case.
+// Rounds to five digits, so that a case is exactly its text.
 static double rounded(double value)
 {
     char text[32];
@@ -168,7 +168,7 @@ static double random_value(const Field *field, Random *random)
     }
 }
 
-// What is drawn together.
+// Fields that are drawn at random together: for a set, for each strand, for the mesh.
 typedef enum Part { OF_SET, OF_STRAND, OF_WARP } Part;
 
 static Part part_of(int field)
@@ -188,15 +188,16 @@ static void draw(StressCase *stress, Part part, Random *random)
     }
 }
 
-// Roots are where float32 still tells a strand's particles apart: reading merges those that are
-// closer than 1e-7 of the largest coordinate.
+// Moves the root near enough to the origin that float32 can tell a strand's particles apart: the
+// reader merges particles that are closer than 1e-7 of the largest coordinate.
 static void keep_apart(StressCase *stress)
 {
     double link = stress->value[STRESS_length] / (stress->value[STRESS_n] - 1);
     stress->value[STRESS_arm] = rounded(fmin(stress->value[STRESS_arm], 1e6 * link));
 }
 
-// Springs take sub-steps by the thousand for long steps (solver_spring.c).
+// Limits the time step for stiff springs, which take thousands of sub-steps for long steps
+// (solver_spring.c).
 static void keep_affordable(StressCase *stress)
 {
     const double *value = stress->value;
@@ -213,7 +214,7 @@ StressCase stress_case_random(const char *algo, const char *variant, int vertice
     StressCase stress = stress_case_plain(algo, variant);
     Random fork = *random, warps = random_create(random_next(&fork), 1);
     draw(&stress, OF_SET, random);
-    // By numbers of its own: a case is the same without its warp.
+    // The warp has random numbers of its own, so a case without its warp stays the same otherwise.
     draw(&stress, OF_WARP, &warps);
     if (stress.value[STRESS_warp] == 0)
         for (int i = STRESS_warp_rate; i <= STRESS_warp_seed; ++i)
@@ -286,8 +287,8 @@ void stress_case_write(const StressCase *stress, char *text, size_t size)
 
 // --- Simpler cases.
 
-// In turn the plain value; half the way there, in the logarithm if both have one, or the plain one
-// from near by; to one digit as people write numbers.
+// Three ways to simplify a value: its plain value; half of the way to it (in the logarithm if both
+// are positive), or the plain value if that is near; the value rounded to one digit.
 enum { MOVES_A_FIELD = 3, VERTEX_MOVES = 5 };
 
 static double simpler_value(const Field *field, int way, double value)
@@ -366,8 +367,8 @@ void stress_case_warp(const StressCase *stress, double time, const double rest[3
 
 // --- The strand.
 
-// The way from particle j - 1 to j along the strand, before it is made `length` long; `main` is a
-// unit vector, `side` one across it.
+// The vector from particle j - 1 to j, before the strand is scaled to `length`. `main` is a unit
+// vector, `side` a unit vector across it.
 static void link_of(const StressCase *stress, int j, const double main[3], const double side[3],
                     Random *random, double link[3])
 {
@@ -408,7 +409,8 @@ void stress_case_make_strand(const StressCase *stress, float (*points)[3])
         link_of(stress, j, main, side, &random, links[j]);
         total += double3_length(links[j]);
     }
-    // Reading leaves apart what is by more than 1e-7 of the largest coordinate, after rounding.
+    // The reader keeps particles apart that are more than 1e-7 of the largest coordinate apart
+    // after rounding.
     double least = fmax(1.1e-9, 4e-7 * (arm + length));
     for (int j = 0; j < n; ++j) {
         double size = j ? double3_length(links[j]) : 1,

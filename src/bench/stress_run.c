@@ -27,7 +27,7 @@ typedef struct Run {
     double allowed;
     Hair hair;
     SectionParams params;
-    Scene scene; // its wind
+    Scene scene; // for its wind
     GpuTimer timer;
     Solver solver;
     SolverStep step;
@@ -35,11 +35,11 @@ typedef struct Run {
     GLuint program;
     const GpuLimits *limits;
     GpuBuffer before, worst, first;
-    Mesh sheet; // to which strands are bound; empty: to none
-    Body body;  // its samples are before and after a step, whose number is their time
+    Mesh sheet; // the mesh that strands are bound to; empty: none
+    Body body;  // two samples, before and after a step; their time is the step's number
     BoundBody bound_body;
     Bound strands;
-    RigidMotion motion; // of the strands' frames, at the step's start
+    RigidMotion motion; // motion of the strands' frames at the start of the step
 } Run;
 
 static void run_destroy(Run *run)
@@ -73,7 +73,7 @@ static Result upload(Run *run, const Gpu *gpu, const StressCase *strands, int co
     return result;
 }
 
-// --- The mesh: a sheet about the roots, which all are in one place.
+// --- The mesh: a sheet around the roots, which are all at the same place.
 
 enum { SHEET_CELLS = 6, SHEET_VERTICES = (SHEET_CELLS + 1) * (SHEET_CELLS + 1) };
 
@@ -127,7 +127,8 @@ static Result bind(Run *run, const Gpu *gpu, int count, Error *error)
     return result;
 }
 
-// The mesh after step i; it stands still in the second half. Returns the strands' frames there.
+// Moves the mesh to its place after step i and returns the motion of the strands' frames. It stands
+// still in the second half.
 static RigidMotion warp(Run *run, int i)
 {
     int moving = i < run->steps / 2 ? i : run->steps / 2;
@@ -164,15 +165,15 @@ static Result create_check(Run *run, const Gpu *gpu, Error *error)
     return result;
 }
 
-// rad, below two turns: the head's angle about z after step i.
+// The angle of the head about z after step i, in radians, less than two turns.
 static double angle_at(const Run *run, int i)
 {
     double moving = i < run->steps / 2 ? i : run->steps / 2;
     return fmod(run->set->value[STRESS_spin] * moving * run->set->value[STRESS_dt], 4 * PI);
 }
 
-// The head after step i: off the origin, to and fro along x, shaken along z, turning about z; it
-// stands still in the second half.
+// The pose of the head after step i: away from the origin, jumping to and fro along x, shaken along
+// z, turning about z. The head stands still in the second half.
 static HeadPose pose_at(const Run *run, int i)
 {
     const double *value = run->set->value;
@@ -190,8 +191,8 @@ static bool is_looked_at(const Run *run, int i)
     return i <= 64 || i % 16 == 0 || i == run->steps || (jumps && i % JUMP_PERIOD < 8);
 }
 
-// The root, which lies at (0, arm, 0) in the head's frame, as float32 has it in the world; `own` is
-// the motion of a mesh that it is bound to.
+// The root in the world as float32 has it. In the head's frame it is at (0, arm, 0). `own` is the
+// motion of the mesh that it is bound to.
 static void root_at(const Run *run, const HeadPose *pose, const RigidMotion *own, double root[3])
 {
     if (run->sheet.vertex_count) {
@@ -327,7 +328,7 @@ static void take_step(Run *run, int i)
 Result stress_run(StressVerdict *verdicts, const Gpu *gpu, const StressCase *strands, int count,
                   int steps, double allowed, Error *error)
 {
-    enum { STEPS_IN_FLIGHT = 256 }; // on a GPU, so that it can be interrupted
+    enum { STEPS_IN_FLIGHT = 256 }; // limits queued work on a GPU, so that interrupts are seen soon
     Run run;
     Result result = run_create(&run, gpu, strands, count, steps, allowed, error);
     for (int i = 1; i <= steps && result == RESULT_OK; ++i) {

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- The device's columns, the same in every row.
+// --- The columns of the device, which are the same in every row.
 
 typedef struct Device {
     const char *name, *value;
@@ -41,7 +41,7 @@ static void list_device(const Gpu *gpu, Device device[DEVICE_COUNT])
     device[4] = (Device){"commit", TRACTRIX_COMMIT};
 }
 
-// --- One value. The kinds' types are what Column says.
+// --- Values. Column says which C type each kind has.
 
 static const char *text_at(const Column *column, const void *row)
 {
@@ -59,7 +59,8 @@ static long whole_at(const Column *column, const void *row)
     return *(const long *)(const void *)((const char *)row + column->place);
 }
 
-// As on the screen (`precise` false) and in CSV; the column's name for a row of NULL.
+// Formats a value for the screen or (`precise`) for CSV. If `row` is NULL, writes the column's
+// name.
 static void format_value(const Column *column, const void *row, bool precise, char *text,
                          size_t size)
 {
@@ -150,7 +151,8 @@ void table_add(Table *table, const void *row)
     json_array_append_new(table->rows, object);
 }
 
-// Counts a bound; `stated` says what it is.
+// Counts a checked bound and keeps the message of the first broken one; `stated` is the text of
+// the bound.
 static const char *judge(Table *table, bool holds, double value, const char *stated,
                          const char *format, va_list arguments)
 {
@@ -189,7 +191,7 @@ const char *table_check_within(Table *table, double value, double least, double 
     return verdict;
 }
 
-// The kept rows as arrays in the order of the columns.
+// Writes the HTML page, with the kept rows as arrays in the order of the columns.
 static Result write_page(const Table *table, Error *error)
 {
     json_t *columns = json_array(), *rows = json_array();
@@ -231,7 +233,8 @@ Result table_close(Table *table, Result result, Error *error)
 {
     bool whole = table->csv_stream && fclose(table->csv_stream) == 0;
     if (!whole) THEN(result, error_set(error, RESULT_FAILED, "no memory for the table"));
-    // What was measured before a failure is worth a file, but no earlier file gives way to nothing.
+    // After a failed measurement the rows so far are written, but an existing file is not replaced
+    // by an empty one.
     bool any = result == RESULT_OK || (result == RESULT_FAILED && json_array_size(table->rows));
     if (any && whole) {
         Error unwritten;

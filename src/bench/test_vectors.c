@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECK_LANES = 8 }; // of a group of glsl/bench/check_*.comp
+enum { CHECK_LANES = 8 }; // work group size of glsl/bench/check_*.comp
 
 typedef float Float4[4];
 
@@ -60,7 +60,7 @@ static Result read_number(const Csv *csv, size_t row, const char *name, double *
     return csv_number(csv, row, column, value, error);
 }
 
-// The columns BEFOREx_AFTER, BEFOREy_AFTER and BEFOREz_AFTER.
+// Reads the columns BEFOREx_AFTER, BEFOREy_AFTER and BEFOREz_AFTER.
 static Result read_vector(const Csv *csv, size_t row, const char *before, const char *after,
                           double value[3], Error *error)
 {
@@ -88,7 +88,7 @@ static double distance(const double a[3], const float b[3])
     return sqrt(sum);
 }
 
-// Runs a check shader over storage buffers; the one at BIND_POSITION_OUT comes back into `results`.
+// A storage buffer of a check shader. The buffer at BIND_POSITION_OUT is read back into `results`.
 typedef struct CheckBuffer {
     GLuint binding;
     const void *data;
@@ -174,7 +174,7 @@ Result test_vectors_check_steps(TestVectorsReport *report, const Gpu *gpu, TestV
     return result;
 }
 
-// --- Chains. Start points and results share their numbering, waypoints have their own.
+// --- Chains. Start points and results have the same numbering; waypoints have their own.
 
 typedef struct Span {
     uint32_t first_point, segments, first_waypoint, waypoints;
@@ -222,7 +222,7 @@ static Result read_spans(Chains *chains, Error *error)
     return RESULT_OK;
 }
 
-// A start point (P), waypoint (M) or result (R).
+// Reads a start point (P), a waypoint (M) or a result (R).
 static Result read_point(Chains *chains, size_t row, Error *error)
 {
     const Csv *csv = &chains->points;
@@ -268,7 +268,7 @@ static Result read_chains(Chains *chains, const char *path, Error *error)
     return RESULT_OK;
 }
 
-// The farthest point of each chain, over its mean segment.
+// Finds the largest distance of a point in each chain, over the chain's mean segment.
 static Result judge_chains(TestVectorsReport *report, const Chains *chains, Error *error)
 {
     for (size_t row = 0; row < chains->cases.row_count; ++row) {
@@ -330,12 +330,12 @@ typedef struct Row {
 } Row;
 static const Column COLUMNS[] = {ROW(TABLE_COLUMN)};
 
-// What is checked: its rule, and what it is measured by.
+// A check: its rule, the unit of its errors and its mark.
 typedef struct Check {
     const char *rule, *unit;
     const char *command, *path;
     double mark;
-    bool stated; // the mark is a bound
+    bool stated; // the docs state the mark as a bound
 } Check;
 
 static void add_category(Table *table, const Check *check, const TestVectorsCategory *category,
@@ -367,7 +367,7 @@ static void add_report(Table *table, const Check *check, const TestVectorsReport
         if (at->worst > all.worst) all.worst = at->worst, all.worst_id = at->worst_id;
     }
     all.rows = report->rows, all.failed = report->failed, all.not_finite = report->not_finite;
-    add_category(table, check, &all, NAN); // its categories have been checked
+    add_category(table, check, &all, NAN); // the categories have been checked already
 }
 
 Result test_vectors_run_steps(const BenchOptions *options, const Gpu *gpu, Error *error)

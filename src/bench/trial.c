@@ -38,7 +38,7 @@ static Result set_param(SectionParams *params, const char *name, const char *tex
     return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
 }
 
-// Words in turn a flag and its value.
+// Applies a text of flags, each followed by its value.
 static Result apply(SectionParams *params, char *words, Error *error)
 {
     char *rest = NULL;
@@ -93,7 +93,7 @@ void trial_format(const Method *method, char *text, size_t size)
              *method->settings ? " " : "", method->settings);
 }
 
-// The solver of a word that ends at a comma or with the text.
+// Finds the solver whose name begins the text and ends at a comma or at the end of the text.
 static const SolverType *find_type(const char *word)
 {
     size_t length = strcspn(word, ",");
@@ -196,8 +196,8 @@ void trial_make_beam(double (*points)[3], int n, double length)
         points[j][0] = length * j / (n - 1), points[j][1] = points[j][2] = 0;
 }
 
-// Segments of equal length: a circle of `turns` turns across the axis, and what is left of the
-// length along it.
+// A helix with segments of equal length: `turns` turns of a circle across the axis; the remaining
+// length goes along the axis.
 void trial_make_helix(double (*points)[3], int n, double length, double turns)
 {
     const double radius = 0.02, along[3] = {0.6, -0.8, 0}, up[3] = {0.8, 0.6, 0};
@@ -311,7 +311,7 @@ Result trial_read_motion(Motion *motion, const char *folder, const char *name, E
     return result;
 }
 
-// Whether FOLDER/NAME.json is a motion's.
+// Whether FOLDER/NAME.json describes a motion.
 static Result is_motion(bool *found, const char *folder, const char *name, Error *error)
 {
     char path[4096];
@@ -407,7 +407,7 @@ double trial_root(const Motion *motion, double t)
 Result trial_start(Trial *trial, const Gpu *gpu, const Motion *motion, const SectionParams *params,
                    double rate, Error *error)
 {
-    SectionParams own = *params; // its strings are borrowed
+    SectionParams own = *params; // a copy that borrows the strings
     Strands strands;
     own.drag = (float)motion->drag;
     *trial = (Trial){0};

@@ -11,7 +11,7 @@ static void add_thread(Waited *sum, const char *number)
     double ran, waited; // ns
     snprintf(path, sizeof path, "/proc/self/task/%s/schedstat", number);
     FILE *file = fopen(path, "r");
-    if (!file) return; // the thread has ended
+    if (!file) return; // the thread has ended meanwhile
     if (fscanf(file, "%lf %lf", &ran, &waited) == 2)
         sum->ran += 1e-6 * ran, sum->waited += 1e-6 * waited;
     fclose(file);
