@@ -9,7 +9,7 @@
 
 static const char VARIABLE[] = "TRACTRIX_ASSUME";
 
-// Whether the word is NAME=N, with N from 1 to `most`, for *value.
+// Whether the word is NAME=N with N from 1 to `most`; stores N in *value.
 static bool is_number(const char *word, const char *name, long most, int *value)
 {
     char *end;
@@ -57,7 +57,8 @@ Result assumptions_take_option(int *argc, char **argv, Error *error)
 {
     for (int i = 1; i < *argc && strcmp(argv[i], "--") != 0; ++i) {
         if (strcmp(argv[i], "--assume-hardware") != 0) continue;
-        memmove(&argv[i], &argv[i + 1], (size_t)(*argc - i) * sizeof *argv); // with the last NULL
+        // Including the NULL at the end.
+        memmove(&argv[i], &argv[i + 1], (size_t)(*argc - i) * sizeof *argv);
         --*argc;
         return assume_hardware(error);
     }

@@ -24,8 +24,8 @@ static const char *const NAMES[CALLS] = {
 
 enum { FRAMES = 8, WATCHED = 64, FENCES = 64 };
 
-// A buffer that the driver fills by a command of its own, and when that was queued last; a fence,
-// and when it was set.
+// `Written`: a buffer that a GL command fills, and the number of the call that queued the last such
+// command. `Fence`: a fence, and the number of the call that set it.
 typedef struct Written {
     GLuint buffer;
     uint64_t at;
@@ -41,12 +41,12 @@ typedef struct Tally {
 } Tally;
 
 static bool counting;
-static Tally now, ended[FRAMES + 1]; // a ring
+static Tally now, ended[FRAMES + 1]; // ring buffer
 static uint64_t frames;
 static Written written[WATCHED];
 static Fence fences[FENCES];
 static int written_next, fence_next;
-static uint64_t passed; // all that was queued before this call has been done
+static uint64_t passed; // number of the last call whose work is known to be complete
 
 // --- Wrappers that count.
 
@@ -56,8 +56,8 @@ static void note_call(enum Call call)
     ++now.by_name[call];
 }
 
-// The driver's function stands in its place while it is called: libepoxy, which looks it up at the
-// first call, puts it there only if its own is there still.
+// libepoxy resolves a function at its first call and then replaces its own pointer, but only if the
+// pointer is still its own. So the real pointer is put back for the duration of the call.
 #undef GL_VALUE
 #define GL_FUNCTION(type, name, parameters, arguments)                                             \
     static type(EPOXY_CALLSPEC *real_##name) parameters;                                           \
@@ -87,7 +87,7 @@ static void note_call(enum Call call)
 #undef GL_VALUE
 #define GL_VALUE GL_FUNCTION
 
-// --- Who waits for whom.
+// --- Which calls wait for the GPU.
 
 static GLuint bound(GLenum target)
 {
@@ -95,7 +95,7 @@ static GLuint bound(GLenum target)
     GLenum name = target == GL_PIXEL_PACK_BUFFER       ? GL_PIXEL_PACK_BUFFER_BINDING
                   : target == GL_SHADER_STORAGE_BUFFER ? GL_SHADER_STORAGE_BUFFER_BINDING
                   : target == GL_UNIFORM_BUFFER        ? GL_UNIFORM_BUFFER_BINDING
-                                                       : target; // of copies: the same number
+                                                       : target; // same value for copies
     epoxy_glGetIntegerv = real_glGetIntegerv;
     glGetIntegerv(name, &buffer);
     real_glGetIntegerv = epoxy_glGetIntegerv;
@@ -199,7 +199,7 @@ static void EPOXY_CALLSPEC watch_glDeleteSync(GLsync sync)
     count_glDeleteSync(sync);
 }
 
-// --- In and out.
+// --- Switching the counting on and off.
 
 static void choose_wrappers(void)
 {
@@ -259,7 +259,7 @@ void gl_count_frame(void)
     if (counting) ended[frames++ % (FRAMES + 1)] = now;
 }
 
-// --- A table.
+// --- The table of calls.
 
 static const uint64_t *order_by;
 

@@ -69,11 +69,11 @@ static Result check_all(const State *states, size_t count, Error *error)
     return RESULT_OK;
 }
 
-// States of more than one number.
+// States that have more than one value.
 static Result check_masks(Error *error)
 {
     GLboolean colors[4] = {GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE};
-    GLint mode[2] = {GL_FILL, GL_FILL}; // the compatibility profile gives front and back
+    GLint mode[2] = {GL_FILL, GL_FILL}; // in the compatibility profile: front and back
     glGetBooleanv(GL_COLOR_WRITEMASK, colors);
     if (!colors[0] || !colors[1] || !colors[2] || !colors[3])
         return error_set(error, RESULT_USAGE,
@@ -88,7 +88,7 @@ static Result check_masks(Error *error)
     return RESULT_OK;
 }
 
-// A sampler object wins over the texture's own filters.
+// A bound sampler object overrides the texture's own filters.
 static Result check_samplers(Error *error)
 {
     GLint active = GL_TEXTURE0, units = 0, sampler = 0;

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <sys/utsname.h>
 
-// --- What a context offers.
+// --- What the context can do.
 
 static void copy_string(char *to, size_t size, GLenum name)
 {
@@ -31,7 +31,7 @@ static void read_processor(char name[256])
     if (info) fclose(info);
 }
 
-// A device may call itself software and be hardware, or the other way round: the renderer's name
+// An EGL device's software flag is not reliable in either direction, so the renderer's name
 // decides.
 static bool is_cpu_driver(const char *renderer)
 {
@@ -56,8 +56,8 @@ static int query_int(GLenum name)
     return value;
 }
 
-// GL 4.3 guarantees shader storage in compute shaders only; vertex and fragment stages get theirs
-// by buffer texture and images.
+// GL 4.3 guarantees storage buffers only in compute shaders. Vertex and fragment shaders read
+// through buffer textures and images instead.
 static Result read_limits(Gpu *gpu, Error *error)
 {
     copy_string(gpu->renderer, sizeof gpu->renderer, GL_RENDERER);
@@ -96,7 +96,7 @@ static void name_platform(Gpu *gpu)
     platform_name(gpu->platform, &facts);
 }
 
-// Sets what depends on what the driver cannot do, and on what tests imitate.
+// Applies the assumptions of tests, and sets the limits that depend on the kind of device.
 static void assume(Gpu *gpu, const Assumptions *assumptions)
 {
     GpuLimits *limits = &gpu->limits;
@@ -113,14 +113,14 @@ static void assume(Gpu *gpu, const Assumptions *assumptions)
         limits->framebuffer_side_px = assumptions->side_px;
 }
 
-// --- The ways to a context.
+// --- Finding a context.
 
-// What a search has met so far.
+// The results of the search so far.
 typedef struct Search {
     GpuOptions options;
     Assumptions assumptions;
-    Error attempts; // all that failed
-    Error hardware; // those of them that are hardware
+    Error attempts; // the errors of all failed attempts
+    Error hardware; // those of them that concern hardware
 } Search;
 
 static bool asks_for_device(const GpuOptions *options)
@@ -144,7 +144,7 @@ static Result accept(Gpu *gpu, const Search *search, int number, Error *error)
     return RESULT_OK;
 }
 
-// `device` NULL: the surfaceless platform.
+// `device` NULL means the surfaceless platform.
 static Result try_egl(Gpu *gpu, const Search *search, const GpuDevice *device, int number,
                       Error *error)
 {
@@ -171,7 +171,7 @@ static Result try_osmesa(Gpu *gpu, const Search *search, Error *error)
     return result;
 }
 
-// Adds to a line of reasons, as long as there is room.
+// Appends a reason to the line, as long as there is room.
 static void note_failure(Error *line, const char *path, const Error *why)
 {
     size_t used = strlen(line->text), room = sizeof line->text - used;
@@ -189,7 +189,7 @@ static bool is_passed_over(const GpuDevice *device, const GpuOptions *options, i
     return other || (options->software && !device->software);
 }
 
-// Hardware devices first, so that the fastest is taken where both are there.
+// Tries hardware devices first, because they are faster.
 static Result try_devices(Gpu *gpu, Search *search)
 {
     Error why;
@@ -227,7 +227,7 @@ static Result try_all(Gpu *gpu, Search *search)
     return RESULT_NO_GL;
 }
 
-// Why a CPU driver was taken though nobody asked for one; "" if no GPU is in sight.
+// Explains why a CPU driver was chosen although nobody asked for one; empty if there is no GPU.
 static void explain_choice(Gpu *gpu, const Search *search)
 {
     const GpuOptions *options = &search->options;
@@ -293,7 +293,7 @@ Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
     return RESULT_OK;
 }
 
-// libepoxy ends the program if it is called without a context.
+// Without a current context libepoxy would end the program, so that is checked first.
 Result gpu_borrow(Gpu *gpu, Error *error)
 {
     Assumptions assumptions;

@@ -7,7 +7,7 @@
 
 typedef void *GetCurrent(void);
 
-// A library that is not loaded yet has made nothing current.
+// Does not load the library: if it is not loaded, it has no current context.
 static bool has_current(const char *library, const char *function)
 {
     void *handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);

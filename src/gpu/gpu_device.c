@@ -91,7 +91,7 @@ bool gpu_device_is(const char *name, int number, const char *renderer, const cha
            (length >= 4 && strncasecmp(name, identity->uuid, length) == 0);
 }
 
-// The first path that the pattern has in `dev`; false: none.
+// The first path under `dev` that matches the pattern; false if there is none.
 static bool find_node(const char *dev, const char *pattern, char path[PATH_MAX])
 {
     char whole[PATH_MAX];

@@ -32,15 +32,15 @@ static Result fail(const char *call, Error *error)
     return error_set(error, RESULT_NO_GL, "%s: %s (0x%04x)", call, words, (unsigned)code);
 }
 
-// Stays open: libepoxy will want it.
+// The library stays open because libepoxy will load it anyway.
 static bool can_load(const char *name)
 {
     void *library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
     return library != NULL; // cppcheck-suppress resourceLeak
 }
 
-// libepoxy ends the program if it can't load libEGL, or one of the two that have OpenGL's entry
-// points: they are tried before its first call.
+// libepoxy ends the program if it cannot load libEGL or, for OpenGL's functions, libOpenGL or
+// libGL. So these are loaded here before its first call.
 static Result require_libraries(Error *error)
 {
     if (!can_load("libEGL.so.1"))
@@ -50,7 +50,8 @@ static Result require_libraries(Error *error)
     return RESULT_OK;
 }
 
-// Words of EGL_EXT_device_drm and EGL_EXT_device_drm_render_node (whose name libepoxy 1.5 lacks).
+// Uses EGL_EXT_device_drm and EGL_EXT_device_drm_render_node; libepoxy 1.5 has no constant for the
+// latter.
 static GpuDevice describe(void *egl)
 {
     enum { RENDER_NODE_FILE = 0x3377 };
@@ -81,7 +82,7 @@ Result gpu_egl_find_devices(GpuDevices *devices, Error *error)
     return RESULT_OK;
 }
 
-// Always by platform, never EGL_DEFAULT_DISPLAY, which would look for X or Wayland.
+// Always names a platform: EGL_DEFAULT_DISPLAY would look for X or Wayland.
 static Result open_display(EglContext *egl, void *device, Error *error)
 {
     const char *client = device ? "EGL_EXT_platform_device" : "EGL_MESA_platform_surfaceless";

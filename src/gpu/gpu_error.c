@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-// GL itself keeps one error for all that a thread's context has done; so does this.
+// Like GL, which keeps one error for everything done in a context, this keeps one for the thread.
 static _Thread_local struct {
     GLenum code;
     const char *pass;

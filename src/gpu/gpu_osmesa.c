@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The few names of <GL/osmesa.h> that are needed, so that building does not need its package.
+// Declares the few constants of <GL/osmesa.h> that are used, so that building needs no package for
+// it.
 enum {
     OSMESA_FORMAT = 0x22,
     OSMESA_DEPTH_BITS = 0x30,
@@ -22,7 +23,7 @@ enum {
 typedef void (*AnyFunction)(void);
 struct GpuOsMesa {
     void *context;
-    uint32_t pixel; // the default framebuffer, which nothing draws to
+    uint32_t pixel; // storage of the default framebuffer, which is never drawn to
     void *(*create)(const int *attributes, void *share);
     void (*destroy)(void *context);
     GLboolean (*make_current)(void *context, void *buffer, GLenum type, GLsizei width,
@@ -30,16 +31,16 @@ struct GpuOsMesa {
     AnyFunction (*get_function)(const char *name);
 };
 
-// POSIX promises that dlsym gives functions, too; ISO C has no cast that says so, a copy of the
-// bytes does.
+// POSIX lets dlsym return functions, but ISO C has no cast from an object pointer to a function
+// pointer, so the bytes are copied.
 static void load(void *library, const char *name, void *function)
 {
     void *address = dlsym(library, name);
     memcpy(function, &address, sizeof address);
 }
 
-// libepoxy resolves a name when it is first called and insists on EGL or GLX for that; its names
-// are plain pointers, though.
+// libepoxy resolves a name at its first call, for which it requires EGL or GLX. Its names are plain
+// function pointers, so they can be set here.
 static bool fill_functions(const GpuOsMesa *mesa)
 {
     bool complete = true;
@@ -55,7 +56,7 @@ static bool fill_functions(const GpuOsMesa *mesa)
     return complete;
 }
 
-// OSMesa of Mesa 22.3 crashes for a driver that it does not know.
+// OSMesa of Mesa 22.3 crashes if it does not know the driver.
 static Result check_driver(Error *error)
 {
     const char *driver = getenv("GALLIUM_DRIVER");

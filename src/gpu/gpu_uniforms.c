@@ -8,20 +8,20 @@
 
 enum { RING_BYTES = 1 << 18 };
 
-// What a binding has.
+// The content of a binding.
 typedef struct Block {
-    size_t size; // 0: nothing
+    size_t size; // 0 if empty
     unsigned char data[GPU_UNIFORMS_MOST];
 } Block;
 
 struct GpuUniforms {
-    GLuint buffer; // 0: none yet
-    size_t step;   // places begin at multiples of it
-    size_t at;     // where the next content goes
+    GLuint buffer; // 0 if not created yet
+    size_t step;   // alignment of offsets
+    size_t at;     // offset of the next content
     Block blocks[GPU_UNIFORMS_BINDINGS];
 };
 
-// Of this thread's current context.
+// The ring of this thread's current context.
 static _Thread_local GpuUniforms *ring;
 
 static size_t round_up(size_t size)
@@ -29,7 +29,7 @@ static size_t round_up(size_t size)
     return (size + ring->step - 1) / ring->step * ring->step;
 }
 
-// Starts the buffer anew. Draws that are queued keep the uniforms that they were given.
+// Orphans the buffer and starts at its beginning. Queued draws keep the uniforms they were given.
 static void begin(void)
 {
     glBindBuffer(GL_UNIFORM_BUFFER, ring->buffer);
@@ -67,7 +67,7 @@ void gpu_uniforms_set(GLuint binding, const void *data, size_t size)
         upload(binding);
         return;
     }
-    begin(); // where all others were is gone, too
+    begin(); // the contents of the other bindings are gone, too
     for (GLuint i = 0; i < GPU_UNIFORMS_BINDINGS; ++i)
         if (ring->blocks[i].size) upload(i);
 }

@@ -12,8 +12,8 @@ static const char *const MAKERS[][2] = {{"nvidia", "nvidia"},
                                         {"radeon", "amd"},
                                         {"intel", "intel"}};
 
-// Appends `length` characters as a part of the name: in lower case, with a '-' for each run of
-// others, and without the marks "(R)" and "(TM)".
+// Appends `length` characters to the name, in lower case and without the marks "(R)" and "(TM)".
+// Each run of characters other than letters and digits becomes one '-'.
 static void add(char name[PLATFORM_BYTES], const char *text, size_t length)
 {
     size_t used = strlen(name);
@@ -44,7 +44,8 @@ static void add_text(char name[PLATFORM_BYTES], const char *text)
     add(name, text, strlen(text));
 }
 
-// The number that stands behind `key` in the text, with at most `dots` dots, behind a word.
+// Appends `word` and the number that follows `key` in the text. The number may have at most `dots`
+// dots. Appends nothing if there is no such number.
 static void add_number(char name[PLATFORM_BYTES], const char *word, const char *text,
                        const char *key, int dots)
 {
@@ -69,7 +70,7 @@ static const char *maker_of(const PlatformFacts *facts)
     return "gpu";
 }
 
-// The device's own name: without what Mesa puts before it, brackets behind it, and the maker.
+// Appends the device's name without the prefix "Mesa", the maker, and anything in brackets.
 static void add_device(char name[PLATFORM_BYTES], const char *renderer)
 {
     size_t maker = strlen(name);
@@ -102,7 +103,7 @@ void platform_name(char name[PLATFORM_BYTES], const PlatformFacts *facts)
 bool platform_has_fma(void)
 {
 #if defined __x86_64__ || defined __i386__
-    // Each value of Mesa's variable takes FMA away (its u_cpu_detect.c).
+    // Every value of this Mesa variable disables FMA (u_cpu_detect.c).
     return __builtin_cpu_supports("fma") && !getenv("GALLIUM_OVERRIDE_CPU_CAPS");
 #else
     return true;

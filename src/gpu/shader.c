@@ -19,7 +19,7 @@ static const GlslSource NONE[] = {{NULL, NULL}};
 static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
 static atomic_bool environment_ignored;
-static _Thread_local int assumed_ulps; // as the current context
+static _Thread_local int assumed_ulps; // of the current context
 
 void shader_add_sources(const GlslSource *sources)
 {
@@ -52,14 +52,14 @@ const char *shader_folder(void)
     return folder_of("TRACTRIX_GLSL_DIR");
 }
 
-// The joined text of a stage. `origins` says where each of its lines comes from: Mesa loses the
-// string number of `#line` in semantic errors, so the map is ours.
+// The concatenated source of a stage. Mesa drops the source string number of `#line` from semantic
+// errors, so `origins` maps each line to its file.
 typedef struct Composition {
     char *text;
     size_t length, capacity;
     struct File {
         const GlslSource *source;
-        Bytes text; // from TRACTRIX_GLSL_DIR; empty: the source's own
+        Bytes text; // read from TRACTRIX_GLSL_DIR; empty if the built-in text is used
     } files[MAX_FILES];
     int file_count;
     struct Origin {
@@ -123,7 +123,8 @@ static Result read_file(struct File *file, Error *error)
     return bytes_read_file(&file->text, path, error);
 }
 
-// A line `#include "name"` alone takes in that file; every other one goes to the driver as it is.
+// Appends a file. A line `#include "name"` is replaced by that file; other directives are left to
+// the driver.
 static Result append_file(Composition *c, const char *name, size_t length, Error *error)
 {
     static const char include[] = "#include \"";
@@ -172,8 +173,8 @@ static Result compose(Composition *c, const char *file, const ShaderDefine *defi
     return append_file(c, file, strlen(file), error);
 }
 
-// Writes the joined text where TRACTRIX_GLSL_DUMP asks for it. The name's number is the text's
-// FNV-1a hash, so that variants of a file lie side by side.
+// Writes the concatenated source to the folder TRACTRIX_GLSL_DUMP, if set. The file name contains
+// the text's FNV-1a hash, so variants do not overwrite each other.
 static Result dump(const Composition *c, const char *file, Error *error)
 {
     const char *folder = folder_of("TRACTRIX_GLSL_DUMP"), *ending = strrchr(file, '.');
@@ -194,8 +195,8 @@ static Result dump(const Composition *c, const char *file, Error *error)
     return outfile_commit(&out, error);
 }
 
-// The first line of a driver's log as "glsl/FILE:LINE: message". Mesa writes "0:12(5): error: ...",
-// NVIDIA "0(12) : ...".
+// Reports the first line of a driver's log as "glsl/FILE:LINE: message". Mesa writes "0:12(5):
+// error: ...", NVIDIA "0(12) : ...".
 static Result report_log(const Composition *c, const char *file, char *log, Error *error)
 {
     int line = 0, ends = 0;
@@ -262,7 +263,7 @@ static Result build(GLuint *program, const Stage *stages, int count, const Shade
         result = shader ? compile(shader, stages[i].file, defines, error)
                         : fail_memory(stages[i].file, error);
         if (result == RESULT_OK) glAttachShader(*program, shader);
-        glDeleteShader(shader); // lives on while it is attached
+        glDeleteShader(shader); // the program keeps it while it is attached
     }
     THEN(result, link_program(*program, stages[count - 1].file, error));
     if (result != RESULT_OK) {

@@ -39,9 +39,9 @@ typedef struct Windows {
     ConvolveKernel kx, ky;
 } Windows;
 
-// Equations (13) and (6) of the paper, at the window around x, y: weighted means, variances and
-// covariance. In double, as variances are differences of large numbers. `share`: the sum of the
-// weights of compared pixels.
+// Equations (13) and (6) of the paper for the window around x, y: weighted means, variances and
+// covariance. Computed in double, because a variance is a small difference of large numbers.
+// `share`: the sum of the weights of the compared pixels.
 static double index_at(const Windows *windows, int x, int y, double *share)
 {
     const ConvolveKernel *kx = &windows->kx, *ky = &windows->ky;
@@ -58,7 +58,7 @@ static double index_at(const Windows *windows, int x, int y, double *share)
             sums[0] += wa, sums[1] += wb;
             sums[2] += wa * l[0], sums[3] += wb * l[1], sums[4] += wa * l[1];
         }
-    if (!windows->mask) *share = 1; // but for rounding
+    if (!windows->mask) *share = 1; // exactly, without rounding errors
     if (*share <= 0) return 0;
     for (int i = 0; i < MOMENTS; ++i) sums[i] /= *share;
     double aa = sums[0] * sums[0], bb = sums[1] * sums[1], ab = sums[0] * sums[1];
@@ -114,7 +114,8 @@ static void count_pixels(CompareResult *result, const CompareLimits *limits, con
     result->rmse = sqrt(sum / (3 * (double)result->compared));
 }
 
-// What is ignored looks like the nearest pixel that is not, as what lies beyond the border does.
+// Replaces ignored pixels by the nearest compared pixel, in the same way as filters extend an image
+// beyond its border.
 static void fill_ignored(FloatImage *image, const Mask *mask)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
@@ -123,7 +124,7 @@ static void fill_ignored(FloatImage *image, const Mask *mask)
                3 * sizeof *image->rgb);
 }
 
-// FLIP's mean and largest value over the compared pixels.
+// The mean and the largest FLIP value of the compared pixels.
 static void take_flip(CompareResult *result, const float *map, const Mask *mask)
 {
     size_t count = (size_t)result->width * (size_t)result->height;
@@ -136,14 +137,14 @@ static void take_flip(CompareResult *result, const float *map, const Mask *mask)
     result->flip = sum / (double)result->compared;
 }
 
-// The two images and what of them is compared.
+// The two images and the pixels to compare.
 typedef struct Comparison {
     const Image *a, *b;
-    const Mask *mask; // NULL: all
+    const Mask *mask; // NULL: all pixels
     const CompareLimits *limits;
 } Comparison;
 
-// Zero differences.
+// A result without differences.
 static CompareResult start_result(const Comparison *comparison)
 {
     int width = comparison->a->width, height = comparison->a->height;
@@ -218,7 +219,8 @@ static Result compare_all(CompareResult *result, float *map, const Comparison *c
 {
     const Image *a = comparison->a, *b = comparison->b;
     size_t count = (size_t)a->width * (size_t)a->height;
-    if (are_equal(a, b)) { // Most frames of most runs: the long way would give just this.
+    // Most frames of most runs are equal; this shortcut gives the same result as the computation.
+    if (are_equal(a, b)) {
         result->ssim = 1;
         memset(map, 0, count * sizeof *map);
     } else {

@@ -57,7 +57,7 @@ void convolve_apply_x(float *out, const float *in, int width, int height,
         }
 }
 
-// A row is done in pieces, whose sums stay in the nearest cache.
+// A row is processed in pieces whose sums stay in the first-level cache.
 void convolve_apply_y(float *out, const float *in, int width, int height,
                       const ConvolveKernel *kernel)
 {

@@ -8,7 +8,8 @@
 #include <string.h>
 
 enum { READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
-enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 }; // of memory, by the file's size
+// Limits of memory: a factor on the file's size, plus a constant.
+enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 };
 
 bool exr_file_is(const Bytes *file)
 {
@@ -35,15 +36,15 @@ static int64_t tell_size(exr_const_context_t context, void *data)
 
 enum { PLANES = 5 };
 
-// A file being read: where its pixels go.
+// The state of reading a file.
 typedef struct Picture {
     ExrStream stream;
     const char *path;
     Image image;                  // of the display window
-    exr_attr_box2i_t data, shown; // windows, first to last
-    const char *names[4];         // of the channels that become R, G, B and A; NULL: none
+    exr_attr_box2i_t data, shown; // windows; the last row and column are included
+    const char *names[4];         // of the channels that become R, G, B and A; NULL if absent
     exr_decode_pipeline_t pipeline;
-    float *block; // [PLANES][block_room]: numbers of a chunk, in the last one those of no use
+    float *block; // [PLANES][block_room] values of one chunk; the last plane takes unused channels
     size_t block_room;
 } Picture;
 
@@ -54,7 +55,7 @@ static Result fail_library(const Picture *picture, exr_result_t code, Error *err
                      exr_stream_reason(&picture->stream, code));
 }
 
-// `code` of a call of the library: goes on, or says what is wrong.
+// Returns from the caller with an error if the call of the library failed.
 #define TRY_EXR(picture, call)                                                                     \
     do {                                                                                           \
         exr_result_t code_ = (call);                                                               \
@@ -100,7 +101,8 @@ static const exr_attr_chlist_entry_t *find_channel(const exr_attr_chlist_t *list
     return NULL;
 }
 
-// Takes R, G and B of the layer, "" or with its dot, if they are there.
+// Selects R, G, B and, if it exists, A of a layer. `layer` is "" or a name with its dot. False if
+// one of R, G and B is missing.
 static bool take_layer(Picture *picture, const exr_attr_chlist_t *list, const char *layer,
                        int length)
 {
@@ -165,7 +167,8 @@ static long long side(int first, int last)
     return (long long)last - first + 1;
 }
 
-// What reading takes of a chunk: here and, packed, unpacked and half-way, in the library.
+// Memory that reading a chunk takes: the block here, and the packed, unpacked and intermediate
+// copies in the library.
 static Result find_chunk_size(const Picture *picture, uint64_t *size, Error *error)
 {
     enum { COPIES = 3 };
@@ -207,7 +210,7 @@ static Result make_image(Picture *picture, Error *error)
     return RESULT_OK;
 }
 
-// Copies the chunk's numbers, whose first pixel is x, y of the data's plane.
+// Copies the values of a chunk to the image. x, y is the chunk's first pixel in the data window.
 static Result store(Picture *picture, long long x, long long y, const exr_chunk_info_t *chunk,
                     Error *error)
 {
@@ -258,7 +261,7 @@ static Result read_chunk(Picture *picture, bool first, const exr_chunk_info_t *c
         for (size_t k = 4; k-- > 0;)
             if (picture->names[k] && strcmp(picture->names[k], channel->channel_name) == 0)
                 plane = k;
-        // Of four channels OpenEXR 3.1 fills all, whether asked or not.
+        // OpenEXR 3.1 fills all channels if there are four, even those without a destination.
         channel->decode_to_ptr = (uint8_t *)(picture->block + plane * picture->block_room);
         channel->user_bytes_per_element = channel->user_pixel_stride = sizeof(float);
         channel->user_data_type = EXR_PIXEL_FLOAT;

@@ -3,7 +3,8 @@
 
 #include <stdio.h>
 
-// The last one stays: the first is often less exact. Files may have put anything into it.
+// Keeps the last message, because the first is often less exact. A message may quote arbitrary
+// bytes of the file.
 void exr_stream_keep_reason(exr_const_context_t context, exr_result_t code, const char *message)
 {
     void *data = NULL;

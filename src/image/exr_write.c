@@ -7,12 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS = 16 }; // of a ZIP block
+enum { ROWS = 16 }; // rows of a ZIP block
 
 static int64_t take_bytes(exr_const_context_t context, void *data, const void *bytes, uint64_t size,
                           uint64_t offset, exr_stream_error_func_ptr_t fail)
 {
-    // The library holds its lock now, for which exr_stream_keep_reason would wait for ever.
+    // exr_stream_keep_reason must not be called here: it would wait for a lock that the library
+    // holds.
     (void)context, (void)fail;
     ExrStream *stream = data;
     size_t end = (size_t)(offset + size);
@@ -24,14 +25,14 @@ static int64_t take_bytes(exr_const_context_t context, void *data, const void *b
         stream->written.data = larger;
         stream->room = room;
     }
-    if (offset > stream->written.size) // a gap that is filled later
+    if (offset > stream->written.size) // a gap, to be filled later
         memset(stream->written.data + stream->written.size, 0, offset - stream->written.size);
     memcpy(stream->written.data + offset, bytes, size);
     if (end > stream->written.size) stream->written.size = end;
     return (int64_t)size;
 }
 
-// A channel: which number of which image, and how it is stored.
+// A channel: the image and the component from which it is taken, and the type in the file.
 typedef struct Channel {
     const char *name;
     int layer; // ExrLayer; -1: the image
@@ -39,7 +40,7 @@ typedef struct Channel {
     exr_pixel_type_t type;
 } Channel;
 
-// In the order of files: that of their names' bytes. HALF stands for what was asked.
+// The order of the names' bytes, as files require. HALF stands for the type that the caller chose.
 static const Channel CHANNELS[] = {{"A", -1, 3, EXR_PIXEL_HALF},
                                    {"B", -1, 2, EXR_PIXEL_HALF},
                                    {"G", -1, 1, EXR_PIXEL_HALF},
@@ -56,7 +57,7 @@ typedef struct Writer {
     ExrStream stream;
     const ExrFile *file;
     exr_encode_pipeline_t pipeline;
-    uint32_t *rows; // [CHANNELS_MOST][ROWS][width]: floats, or numbers of strands
+    uint32_t *rows; // [CHANNELS_MOST][ROWS][width] floats, or strand numbers
 } Writer;
 
 static exr_result_t add_channels(const Writer *writer)
@@ -75,7 +76,7 @@ static exr_result_t add_channels(const Writer *writer)
 
 static exr_result_t add_matrix(exr_context_t context, const char *name, const float (*columns)[4])
 {
-    // The library's matrices are for row vectors and lie row by row: the same order.
+    // The library stores matrices for row vectors by rows, which is the same order as ours.
     exr_attr_m44f_t matrix;
     if (!columns) return EXR_ERR_SUCCESS;
     memcpy(matrix.m, columns, sizeof matrix.m);
@@ -118,7 +119,7 @@ static uint32_t bits_of(float value)
     return bits;
 }
 
-// The stored number of a channel, from what the layer's pixel has.
+// The value to store in a channel, computed from the layer's pixel.
 static uint32_t convert(const Channel *channel, const float *pixel, int channels)
 {
     if (channel->layer < 0) return bits_of(channel->number < channels ? pixel[channel->number] : 1);
@@ -134,8 +135,9 @@ static uint32_t convert(const Channel *channel, const float *pixel, int channels
     return bits_of(square == 0 ? 0 : (float)(t[channel->number] / sqrt(square)));
 }
 
-// Whether all layers of the nearest strand have one. Each is drawn for itself: where it covers just
-// as much as it takes, some may have it and others not.
+// Whether every layer shows a strand at the pixel. A layer shows the nearest strand that covers
+// enough of the pixel. Layers are rendered one by one, so if a strand covers just about enough,
+// some layers may show it and others may not.
 static bool has_strand(const Image *layers, size_t pixel)
 {
     for (int l = EXR_DEPTH; l <= EXR_STRAND; ++l) {
@@ -164,7 +166,7 @@ static void fill_rows(const Writer *writer, int y, int rows)
     }
 }
 
-// The place in `rows` of the channel of that name.
+// The rows of the channel with this name.
 static const uint8_t *rows_of(const Writer *writer, const char *name)
 {
     size_t width = (size_t)writer->file->image->width;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Per pixel: E = dEc ^ (1 - dEf), with dEc the difference of colours as they are seen after the
-// contrast sensitivity of the eye has blurred them, and dEf that of edges and points, which makes
-// a difference of colours count the more where there is a difference of features.
+// Error of a pixel: E = dEc ^ (1 - dEf). dEc is the difference of the colours after a blur by the
+// eye's contrast sensitivity. dEf is the difference of edges and points; it amplifies a difference
+// of colours at the same pixel.
 #include "image/flip.h"
 
 #include "image/convolve.h"
@@ -13,8 +13,8 @@
 
 // --- Colours.
 
-// The primaries of IEC 61966-2-1 under D65 at x = 0.31271, y = 0.32902, as the authors' tool has
-// them: exact fractions of those chromaticities. The white is the sum of each row.
+// RGB to XYZ for the primaries of IEC 61966-2-1 and D65 at x = 0.31271, y = 0.32902: the exact
+// fractions that the authors' tool uses. White is the sum of each row.
 static const double XYZ_FROM_RGB[3][3] = {
     {10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
@@ -26,7 +26,8 @@ static double determinant(const double m[3][3], int r0, int r1, int c0, int c1)
     return m[r0][c0] * m[r1][c1] - m[r0][c1] * m[r1][c0];
 }
 
-// Cramer's rule: element r, c of the inverse is the cofactor c, r over the determinant.
+// Inverts XYZ_FROM_RGB by Cramer's rule: element r, c of the inverse is the cofactor c, r over the
+// determinant.
 static void solve_rgb(double rgb[3], const double xyz[3])
 {
     double volume = 0;
@@ -45,7 +46,7 @@ static double white(int i)
     return XYZ_FROM_RGB[i][0] + XYZ_FROM_RGB[i][1] + XYZ_FROM_RGB[i][2];
 }
 
-// X, Y and Z relative to white.
+// X, Y and Z divided by those of white.
 static void relative_xyz(double xyz[3], const double rgb[3])
 {
     for (int i = 0; i < 3; ++i)
@@ -63,7 +64,7 @@ void flip_opponent(double ycc[3], const double rgb[3])
     ycc[2] = 200 * (xyz[1] - xyz[2]);
 }
 
-// Back to linear RGB, clamped to what a monitor shows.
+// Back to linear RGB, clamped to the range of a monitor.
 static void rgb_from_opponent(double rgb[3], const double ycc[3])
 {
     double y = (ycc[0] + 16) / 116;
@@ -72,7 +73,7 @@ static void rgb_from_opponent(double rgb[3], const double ycc[3])
     for (int i = 0; i < 3; ++i) rgb[i] = fmin(fmax(rgb[i], 0), 1);
 }
 
-// CIE 15: a cube root with a straight line below (6/29)^3.
+// CIE 15: a cube root, with a straight line below (6/29)^3.
 static double lab_curve(double t)
 {
     const double delta = 6.0 / 29;
@@ -95,11 +96,11 @@ double flip_hyab(const double a[3], const double b[3])
     return fabs(a[0] - b[0]) + sqrt(da * da + db * db);
 }
 
-// The exponent of differences, and the share pc of the largest one which is mapped linearly to
-// 0..pt; the rest goes to pt..1.
+// QC is the exponent of colour differences. The lower share PC of their range is mapped linearly to
+// 0..PT, the rest to PT..1.
 static const double QC = 0.7, PC = 0.4, PT = 0.95;
 
-// Green and blue are the two colours of sRGB that are farthest apart.
+// Green and blue are the two sRGB colours with the largest difference.
 static double largest_power(void)
 {
     const double green[3] = {0, 1, 0}, blue[3] = {0, 0, 1};
@@ -122,8 +123,8 @@ double flip_color_difference(double hyab)
 
 // --- Filters.
 
-// Table 1: a contrast sensitivity is the sum of a Gaussian or two, a sqrt(pi / b) exp(-pi^2 x^2 /
-// b) with x in degrees.
+// Table 1: a contrast sensitivity is a sum of one or two Gaussians a sqrt(pi / b) exp(-pi^2 x^2 /
+// b), x in degrees.
 static const struct {
     int channel; // of YCxCz
     double a, b;
@@ -131,19 +132,20 @@ static const struct {
 enum { SENSITIVITIES = sizeof SENSITIVITY / sizeof *SENSITIVITY };
 static const double SENSITIVITY_WIDEST = 0.04;
 
-// Width of the edges and points that are looked for, in degrees (section 4.2), and the exponent of
-// their differences.
+// FEATURE_WIDTH is the width of the detected edges and points in degrees (section 4.2), QF the
+// exponent of their differences.
 static const double FEATURE_WIDTH = 0.082, QF = 0.5;
 
 typedef struct Filters {
     ConvolveKernel blur[SENSITIVITIES];
-    double shares[SENSITIVITIES]; // of a channel's weight; 1 where it has one Gaussian
+    double shares[SENSITIVITIES]; // weight within the channel; 1 if it has one Gaussian
     ConvolveKernel gauss, edge, point;
 } Filters;
 
-// exp(-pi^2 x^2 / b) is a Gaussian of variance b / (2 pi^2); three of the widest one's standard
-// deviations are the radius of all. The kernels have sum 1, so the Gaussian's own weight in two
-// dimensions, its factor times the square of its sum, becomes a share.
+// exp(-pi^2 x^2 / b) is a Gaussian of variance b / (2 pi^2). All kernels have the same radius,
+// three standard deviations of the widest. Each kernel is normalised to sum 1, so a Gaussian's
+// weight in two dimensions, its factor times the square of its original sum, becomes its share of
+// the channel.
 static void make_blurs(Filters *filters, double ppd)
 {
     int radius = (int)ceil(3 * sqrt(SENSITIVITY_WIDEST / (2 * M_PI * M_PI)) * ppd);
@@ -151,7 +153,7 @@ static void make_blurs(Filters *filters, double ppd)
     for (int i = 0; i < SENSITIVITIES; ++i) {
         double sigma = sqrt(SENSITIVITY[i].b / (2 * M_PI * M_PI)) * ppd;
         convolve_make_gauss(&filters->blur[i], radius, sigma);
-        double sum = 1 / filters->blur[i].weights[radius]; // as exp(0) = 1
+        double sum = 1 / filters->blur[i].weights[radius]; // because exp(0) = 1
         filters->shares[i] = SENSITIVITY[i].a * sqrt(M_PI / SENSITIVITY[i].b) * sum * sum;
         totals[SENSITIVITY[i].channel] += filters->shares[i];
     }
@@ -168,13 +170,13 @@ static void make_filters(Filters *filters, double ppd)
     convolve_make_derivative(&filters->point, 2, radius, sigma);
 }
 
-// --- An image: what of it is compared.
+// --- An image as the eye perceives it.
 
 enum { YCC = 0, SEEN = 3, EDGE = 6, POINT, SCRATCH, PLANES = SCRATCH + 2 };
 
 typedef struct Percept {
     int width, height;
-    float *planes; // [PLANES][height][width]: YCxCz, the same blurred and then Hunt's L*a*b*, ...
+    float *planes; // [PLANES][height][width] YCxCz, then blurred and in Hunt's L*a*b*, ...
 } Percept;
 
 static float *plane_of(const Percept *percept, int plane)
@@ -226,8 +228,9 @@ static void see_colors(const Percept *percept, const Filters *filters)
     }
 }
 
-// The length of the two responses, along x and along y, of `kernel` to the luminance Y between 0
-// and 1. An affine map of YCxCz's Y commutes with the filters, whose sum is 0: it takes the factor.
+// The norm of the responses to `kernel` along x and along y. The filters work on YCxCz's Y instead
+// of the luminance in 0..1. That is an affine map of it: the offset drops out because the filters
+// sum to 0, and the division by 116 undoes the factor.
 static void find_feature(const Percept *percept, int out, const ConvolveKernel *kernel,
                          const ConvolveKernel *gauss)
 {
@@ -254,7 +257,7 @@ static Result percept_create(Percept *percept, const FloatImage *image, const Fi
     return RESULT_OK;
 }
 
-// ---
+// --- The error of a pixel.
 
 static double error_at(const Percept *a, const Percept *b, size_t i, double most)
 {
@@ -266,8 +269,7 @@ static double error_at(const Percept *a, const Percept *b, size_t i, double most
     double color = redistribute(flip_hyab(p, q), most);
     double edge = fabs((double)plane_of(a, EDGE)[i] - (double)plane_of(b, EDGE)[i]);
     double point = fabs((double)plane_of(a, POINT)[i] - (double)plane_of(b, POINT)[i]);
-    // A response is at most sqrt(2) long, being two of at most 1; beyond the exact bound there is
-    // only rounding.
+    // Each of the two responses is at most 1, so the norm is at most sqrt(2), apart from rounding.
     double feature = fmin(pow(fmax(edge, point) / sqrt(2), QF), 1);
     return color > 0 ? fmin(pow(color, 1 - feature), 1) : 0;
 }

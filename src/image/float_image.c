@@ -32,20 +32,20 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
     return result;
 }
 
-// Sample `i` in levels, alpha (one of four) too.
+// Sample `i` in levels 0..255; for alpha, too.
 static double read_level(const Image *image, size_t i)
 {
     if (image->kind == IMAGE_8) return image->pixels[i];
     return ((const uint16_t *)(const void *)image->pixels)[i] / 257.0;
 }
 
-// As image_srgb_from_linear, but beyond 0..1 as well.
+// Like image_srgb_from_linear, but also for values outside 0..1, and in levels.
 static double level_of_light(double linear)
 {
     return 255 * copysign(srgb_encode(fabs(linear)), linear);
 }
 
-// Of a pixel's colour, which begins with sample `i`, in levels.
+// Composites the pixel that begins with sample `i` over a grey background of `level`. In levels.
 static void lay_over(const Image *image, size_t i, float level, float rgb[3])
 {
     bool has_alpha = image->channels == 4;

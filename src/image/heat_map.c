@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// Colours at equal steps; their CIE L* is 0, 25, 50, 75 and 98 to within 2.
+// Colours at equal steps. Their CIE L* is 0, 25, 50, 75 and 98, to within 2.
 static const float STOPS[][3] = {
     {0, 0, 2}, {88, 30, 120}, {200, 62, 110}, {252, 159, 106}, {254, 250, 205}};
 enum { STOP_COUNT = sizeof STOPS / sizeof *STOPS, GAP_PX = 4, CHECK_PX = 8, STRIPE_PX = 4 };
@@ -46,7 +46,7 @@ Result heat_map_create(Image *image, const float *errors, int width, int height,
 
 // --- The sheet.
 
-// Over light and dark grey in squares.
+// Draws the image over a checkerboard of light and dark grey.
 static Result put_image(Image *sheet, int left, const Image *image, Error *error)
 {
     FloatImage dark = {0}, light = {0};

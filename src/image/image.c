@@ -59,7 +59,7 @@ double image_srgb_from_linear(double value)
 
 // --- Contact sheets.
 
-static const double SHEET_MAX_BYTES = 1 << 30; // what the PNG writer takes
+static const double SHEET_MAX_BYTES = 1 << 30; // limit of the PNG writer
 
 Result image_sheet_create(ImageSheet *sheet, int columns, int rows, const Image *tile, Error *error)
 {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Section 11.3.4.2 of the PNG specification, and ASCII only.
+// Section 11.3.4.2 of the PNG specification, restricted to ASCII.
 bool image_texts_is_key(const char *key)
 {
     size_t length = strlen(key);
@@ -39,7 +39,7 @@ static ImageText *find(const ImageTexts *texts, const char *key)
     return NULL;
 }
 
-// The text of this key, empty if it is new; NULL: no memory.
+// Finds or adds the text with this key; a new one is empty. NULL if memory is short.
 static ImageText *find_or_add(ImageTexts *texts, const char *key)
 {
     ImageText *text = find(texts, key);

@@ -14,8 +14,8 @@
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
 
-// Bytes that grow, by one more than their size: a zero behind them. What comes after a failure is
-// left out.
+// A growing buffer that always has room for a zero byte at its end. After a failure, further bytes
+// are dropped.
 typedef struct Sink {
     Bytes bytes;
     size_t room;

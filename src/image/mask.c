@@ -6,10 +6,10 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-// --- The nearest pixel that is compared: along columns first, then across them.
+// --- The nearest compared pixel, searched along columns and then across them.
 
-// For each pixel, the row of the nearest compared pixel in its column, -1 if there is none; of two
-// equally near ones the upper.
+// For each pixel, the row of the nearest compared pixel in its column; -1 if there is none, the
+// upper one if two are equally near.
 static void find_rows(int *rows, const bool *compared, int width, int height)
 {
     for (int x = 0; x < width; ++x) {
@@ -28,8 +28,8 @@ static void find_rows(int *rows, const bool *compared, int width, int height)
     }
 }
 
-// Goes away from x on both sides until columns are farther off than the best pixel so far; of
-// equally near ones the first that it meets.
+// Searches columns on both sides of x until they are farther away than the best pixel so far. Of
+// equally near pixels, the first one found wins.
 static int find_nearest(const int *rows, int width, int x, int y)
 {
     int64_t best = INT64_MAX;

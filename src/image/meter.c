@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double MOST = 20; // EV, as --exposure has it
+static const double MOST = 20; // EV, the range of --exposure
 
 static int compare(const void *a, const void *b)
 {
@@ -13,7 +13,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// What the meter sees: luminances of covered pixels, sorted, and of those that are hair.
+// The meter's input: sorted luminances of all covered pixels, and luminances of hair pixels.
 typedef struct Seen {
     float *light, *hair;
     size_t count, hairs;
@@ -40,7 +40,7 @@ static void look(Seen *seen, const Image *image, const Image *hair)
     qsort(seen->light, seen->count, sizeof *seen->light, compare);
 }
 
-// The mean that hair shows at an exposure (EV).
+// The mean display value of the hair at an exposure (EV).
 static double mean_shown(const Seen *seen, Tone tone, double exposure)
 {
     double sum = 0, scale = exp2(exposure);
@@ -49,7 +49,7 @@ static double mean_shown(const Seen *seen, Tone tone, double exposure)
     return sum / (double)seen->hairs;
 }
 
-// EV before rounding. What is shown grows with the exposure.
+// The exposure in EV, before rounding. Bisection works because the mean grows with the exposure.
 static double find_exposure(const Seen *seen, Tone tone)
 {
     double low = -MOST, high = MOST;

@@ -52,7 +52,7 @@ static bool read_header(Header *header, const Bytes *file)
     char kind = 0;
     double scale = 0;
     int end = 0;
-    // The bytes end with a zero, and the numbers are cut before what an int holds.
+    // The data ends with a zero byte, and %9d limits the numbers to what an int holds.
     if (sscanf((const char *)file->data, "P%c%*1[\n]%9d %9d%*1[\n]%lf%n", &kind, &header->width,
                &header->height, &scale, &end) != 4 ||
         (kind != 'F' && kind != 'f') || file->data[end] != '\n')
@@ -63,7 +63,7 @@ static bool read_header(Header *header, const Bytes *file)
     return header->width > 0 && header->height > 0 && isfinite(scale) && scale != 0;
 }
 
-// The pixels of a file whose size has been checked. Whether all are finite.
+// Copies the pixels of a file whose size was checked. False if a value is not finite.
 static bool take_pixels(Image *image, const Header *header, const uint8_t *from)
 {
     size_t width = (size_t)header->width, channels = (size_t)header->channels;

@@ -8,39 +8,40 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Measured on frames of hair: the higher levels take half as long again for little or no gain in
-// size, and as hair runs downwards the row above predicts well.
+// Measured on frames of hair: higher levels take half as long again for little or no gain in size.
+// The filter "up" suits hair, which runs downwards.
 enum { DEFLATE_LEVEL = 1, PALETTE_DEFLATE_LEVEL = 9, PALETTE_COLORS = 256 };
 enum { ENCODE_MAX_BYTES = 1 << 30, READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
-enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 }; // of memory, by the file's size
+// Limits of memory: a factor on the file's size, plus a constant.
+enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 };
 enum { TEXT_MAX_BYTES = 1 << 17, TEXT_MAX_COUNT = 128 };
 enum { BYTE_BITS = 8, SIGNATURE_BYTES = 8 };
 
-// What libpng and the functions that it calls work with. libpng leaves by longjmp: nothing in a
-// step may need cleaning up but what is here.
+// The state shared with libpng's callbacks. libpng reports errors by longjmp, so a step must keep
+// everything that needs cleaning up in here.
 typedef struct Codec {
     png_structp png;
     png_infop info;
     char reason[200];     // of the failure
-    const uint8_t *bytes; // read
+    const uint8_t *bytes; // file being read
     size_t size, at;
-    Bytes written; // with `room`
+    Bytes written; // file being written, with `room` bytes allocated
     size_t room;
-    const Image *source;      // to be written: with these rows, compressed
-    const png_color *palette; // of `colors`, of which the source has indices; NULL: none
+    const Image *source;      // image to be written; `packed` has its compressed rows
+    const png_color *palette; // `colors` entries, if the source has indices; NULL otherwise
     int colors;
     const ImageTexts *texts;
-    png_text *chunks; // of the texts
+    png_text *chunks; // texts in libpng's form
     uint8_t *packed;
     size_t packed_size;
     Image image; // being read
-    bool deep;   // 16 bits stay
+    bool deep;   // keep 16 bits per sample
 } Codec;
 
 static void fail(png_structp png, png_const_charp message)
 {
     Codec *codec = png_get_error_ptr(png);
-    // The warning before it says which part of the header is wrong.
+    // Keep the warning that came before: it says which part of the header is wrong.
     if (!codec->reason[0] || strncmp(message, "Invalid IHDR", 12) != 0)
         snprintf(codec->reason, sizeof codec->reason, "%s", message);
     png_longjmp(png, 1);
@@ -52,7 +53,7 @@ static void warn(png_structp png, png_const_charp message)
     snprintf(codec->reason, sizeof codec->reason, "%s", message);
 }
 
-// Whether the step came to its end; else `reason` says why not.
+// Runs the step. If it fails, returns false and `reason` has the message.
 static bool go(Codec *codec, void (*step)(Codec *codec))
 {
     if (setjmp(png_jmpbuf(codec->png))) return false;
@@ -108,8 +109,8 @@ static void write_file(Codec *codec)
     png_write_chunk(codec->png, (png_const_bytep) "IEND", NULL, 0);
 }
 
-// to = a - b, byte by byte. In pieces, since compilers make no vectors of such a loop by
-// themselves.
+// to = a - b, byte by byte. Written with explicit vectors, since compilers do not vectorise the
+// plain loop.
 static void subtract(uint8_t *to, const uint8_t *a, const uint8_t *b, size_t count)
 {
     typedef uint8_t Piece __attribute__((vector_size(16)));
@@ -124,7 +125,8 @@ static void subtract(uint8_t *to, const uint8_t *a, const uint8_t *b, size_t cou
     for (; i < count; ++i) to[i] = (uint8_t)(a[i] - b[i]);
 }
 
-// Each row: the filter, then its bytes, big-endian ones, less those of the row above.
+// Writes each row as its filter type "up", then the difference of its big-endian bytes to those of
+// the row above.
 static void filter_rows(const Image *image, size_t row, uint8_t *to)
 {
     bool swapped = image->kind == IMAGE_16 && htobe16(1) != 1;
@@ -141,7 +143,7 @@ static void filter_rows(const Image *image, size_t row, uint8_t *to)
     }
 }
 
-// Rows of indices, which no filter makes smaller.
+// Writes rows of palette indices unfiltered: no filter makes them smaller.
 static void copy_rows(const Image *image, size_t row, uint8_t *to)
 {
     for (int y = 0; y < image->height; ++y, to += row + 1) {
@@ -150,7 +152,7 @@ static void copy_rows(const Image *image, size_t row, uint8_t *to)
     }
 }
 
-// false when memory is short.
+// False if memory is short.
 static bool pack_rows(Codec *codec)
 {
     const Image *image = codec->source;
@@ -170,7 +172,7 @@ static bool pack_rows(Codec *codec)
     return codec->packed_size > 0;
 }
 
-// Room for the file: chunks take 12 bytes each, those of texts a few more.
+// Room for the file: a chunk takes 12 bytes besides its data; text chunks take a few more.
 static bool make_room(Codec *codec)
 {
     enum { REST = 256 + 3 * PALETTE_COLORS };
@@ -217,7 +219,8 @@ Result png_encode(const Image *image, const ImageTexts *texts, Bytes *png, Error
     return encode(&codec, png, error);
 }
 
-// The index of each pixel's colour; false: there are too many colours. Neighbours are often equal.
+// Finds the index of each pixel's colour; false if there are more than PALETTE_COLORS colours.
+// Neighbours are often equal, so the last index is tried first.
 static bool find_palette(const Image *image, uint8_t *indices, png_color palette[PALETTE_COLORS],
                          int *colors)
 {
@@ -268,7 +271,7 @@ static void give_bytes(png_structp png, png_bytep bytes, size_t size)
     codec->at += size;
 }
 
-// Nothing but pixels and what they need is looked at, and nothing of that is forgiven.
+// Reads only the pixels and the chunks that they need, and treats any error in these as fatal.
 static void expect_pixels(Codec *codec)
 {
     png_set_keep_unknown_chunks(codec->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
@@ -320,7 +323,8 @@ static void read_pixels(Codec *codec)
     png_read_end(png, NULL);
 }
 
-// Pixels are not touched before they are read: the memory that a header asks for need not be there.
+// The pixels are not cleared: a header may promise a large image, and untouched pages cost no
+// memory.
 static Result make_image(Codec *codec, const char *path, Error *error)
 {
     Image *image = &codec->image;
@@ -341,8 +345,8 @@ static Result make_image(Codec *codec, const char *path, Error *error)
                      image->height);
 }
 
-// libpng trusts the length that a chunk states. This limit makes it refuse lengths that memory
-// cannot hold.
+// libpng trusts the length that a chunk declares. This limit makes it refuse lengths out of
+// proportion to the file's size.
 static png_voidp give_memory(png_structp png, size_t size)
 {
     const Codec *codec = png_get_mem_ptr(png);
@@ -368,7 +372,7 @@ static Result open_reader(Codec *codec, const Bytes *file, const char *path, Err
     return error_set(error, RESULT_FAILED, "%s: no memory to read it", path);
 }
 
-// The step, or what is wrong with the file.
+// Runs the step; an error names the file.
 static Result try_step(Codec *codec, void (*step)(Codec *codec), const char *path, Error *error)
 {
     if (go(codec, step)) return RESULT_OK;
@@ -411,7 +415,7 @@ Result png_read(Image *image, const char *path, Error *error)
 
 // --- Texts.
 
-// Latin-1 takes at most two bytes a letter in UTF-8.
+// A Latin-1 character takes at most two bytes in UTF-8.
 static Result set_latin(ImageTexts *texts, const char *key, const char *latin, Error *error)
 {
     char *text = malloc(2 * strlen(latin) + 1), *to = text;

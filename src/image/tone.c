@@ -19,8 +19,8 @@ double tone_map(Tone tone, double light)
     return light;
 }
 
-// The positive root of tone_map(light) = value, a quadratic a light^2 + b light + c = 0 with a > 0
-// >= c.
+// The positive root of tone_map(light) = value. It is a quadratic equation a light^2 + b light + c
+// = 0 with a > 0 >= c.
 double tone_unmap(Tone tone, double value)
 {
     double a, b, c;

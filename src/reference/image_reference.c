@@ -11,27 +11,28 @@
 
 // --- Shapes.
 
-static const double LEAST_COSINE = 0.25; // of the joints' 1 + n0.n1: longer mitres are cut
+// Least value of 1 + n0.n1 at a joint, which limits the length of mitres.
+static const double LEAST_COSINE = 0.25;
 
-// What does not change within a section. A light's is 0 wide and high, with a focal length of 1.
+// The projection of a section. For a light, width and height are 0 and the focal length is 1.
 typedef struct Projector {
     const ReferenceScene *scene;
     const ReferenceItem *item;
-    const LightView *light;                     // NULL: the camera's
+    const LightView *light;                     // NULL for the camera
     double width, height, focal, near_distance; // px, px, px, m
-    double least;                               // px: shorter ribbons are left out
+    double least;                               // px, thinner ribbons are omitted
     double base[3];                             // the section's colour, linear
 } Projector;
 
-// A vertex of a strand before the camera, or before the light.
+// A vertex of a strand in the space of the camera or of the light.
 typedef struct Vertex {
-    double eye[3]; // in the camera's frame: x right, y up, z towards the viewer, m; or u, v, depth
+    double eye[3]; // in the camera's frame: x right, y up, z backwards, m; for a light u, v, depth
     bool seen;
     double radius;
     double color[3];
 } Vertex;
 
-// The same on the screen.
+// The vertex projected to the screen.
 typedef struct Point {
     double x, y; // px
     double inverse_w, half_width;
@@ -50,8 +51,8 @@ static double angle(const double a[3], const double b[3])
     return acos(fmin(fmax(double3_dot(a, b), -1), 1));
 }
 
-// What reaches x from the light, as a white matt surface square to it shows it, and the unit vector
-// towards it (scene.h).
+// The irradiance at x from the light, on a surface facing the light, and the unit vector towards
+// the light (scene.h).
 static double reaching(const Light *light, const double x[3], double to_light[3])
 {
     bool far = light->kind == LIGHT_DIRECTIONAL;
@@ -70,7 +71,8 @@ static double reaching(const Light *light, const double x[3], double to_light[3]
     return light->intensity * fmin(distance * distance / square, 1e6) * inside * inside;
 }
 
-// Half-way between ground and sky where the side of the fibre that is seen faces the horizon.
+// The weight of the sky, the rest is the ground's. It is 1/2 if the visible side of the fibre faces
+// the horizon.
 static double sky_share(const ReferenceVertex *v)
 {
     double along = double3_dot(v->tangent, v->to_eye), side[3];
@@ -79,9 +81,9 @@ static double sky_share(const ReferenceVertex *v)
     return 0.5 + acos(-1) / 8 * side[1];
 }
 
-// Kajiya & Kay (1989), highlights as Scheuermann (2004): light at the angle t to the fibre leaves
-// on the cone at pi - t, turned by twice the scales' tilt for the first highlight and by three
-// times, the other way, for the second, which has the fibre's colour.
+// Kajiya & Kay (1989) with the highlights of Scheuermann (2004). Light that arrives at angle t to
+// the fibre leaves on the cone at pi - t. The first highlight is shifted by twice the scales' tilt;
+// the second, which has the fibre's colour, by three times the tilt in the opposite direction.
 static void shade_kajiya(const ReferenceScene *scene, const SectionParams *m,
                          const ReferenceVertex *v, double color[3])
 {
@@ -104,7 +106,7 @@ static void shade_kajiya(const ReferenceScene *scene, const SectionParams *m,
     }
 }
 
-// Uniform in -1 .. 1, the same as glsl/common/hash.h gives.
+// A random number in -1 .. 1, identical to that of glsl/common/hash.h.
 static double hash_signed(uint32_t id)
 {
     id = (id ^ (id >> 16)) * 0x7feb352du;
@@ -161,7 +163,7 @@ static Vertex find_vertex(const Projector *p, uint32_t strand, uint32_t j, const
     return v;
 }
 
-// Moves `from` towards `to` up to the near plane.
+// The point between `from` and `to` on the near plane.
 static Vertex clip(const Projector *p, const Vertex *from, const Vertex *to)
 {
     Vertex v = *from;
@@ -191,7 +193,8 @@ static Point project(const Projector *p, const Vertex *v)
     return point;
 }
 
-// From the middle line to the left edge at a joint of ribbons that run along d0 and d1.
+// The vector from the centre line to the left edge, at a joint of ribbons with directions d0 and
+// d1.
 static void find_mitre(const Projector *p, const Point *at, const double d0[2], const double d1[2],
                        double mitre[2])
 {
@@ -216,7 +219,7 @@ static void set_span(Shape *shape)
     }
 }
 
-// From `first` at a to `last` at b.
+// The plane that is `first` at a and `last` at b, and constant across the ribbon.
 static ShapePlane plane_between(const Point *a, const Point *b, double first, double last)
 {
     double x = b->x - a->x, y = b->y - a->y, square = x * x + y * y;
@@ -227,7 +230,8 @@ static ShapePlane plane_between(const Point *a, const Point *b, double first, do
     return plane;
 }
 
-// `before` and `after` are the neighbours' directions, d the ribbon's own; 0 where there is none.
+// d is the direction of the ribbon; `before` and `after` are those of its neighbours, 0 if there is
+// none.
 static void add_ribbon(Shapes *shapes, const Projector *p, const Point *a, const Point *b,
                        const double before[2], const double d[2], const double after[2],
                        double opacity)
@@ -359,9 +363,9 @@ void image_reference_destroy_shapes(Shapes *shapes)
 
 // --- Pixels.
 
-// A sub-sample that lies inside a shape.
+// A shape at a sub-sample.
 typedef struct Hit {
-    uint32_t sample; // of the row of pixels: sub-row, then column
+    uint32_t sample; // index in the row of pixels: sub-row, then column
     uint32_t shape;
     float inverse_w;
     float color[4]; // premultiplied
@@ -371,7 +375,7 @@ typedef struct Hit {
 typedef struct Row {
     Hit *hits;
     size_t count, room;
-    Hit *sorted;     // by sub-sample; as much room as hits
+    Hit *sorted;     // sorted by sub-sample, with the same room as hits
     uint32_t *first; // [samples + 1]
     int width, side, row;
 } Row;
@@ -395,7 +399,7 @@ int image_reference_cross(const Shape *shape, double y, double crossing[4])
     int count = 0;
     for (int i = 0; i < shape->corners; ++i) {
         const double *a = shape->corner[i], *b = shape->corner[(i + 1) % shape->corners];
-        if (a[1] > b[1]) { // the same sum for both shapes at an edge
+        if (a[1] > b[1]) { // ordering the ends makes both shapes at an edge compute the same x
             const double *other = a;
             a = b, b = other;
         }
@@ -433,7 +437,7 @@ static Result add_shape(Row *row, const Shape *shape, uint32_t number, Error *er
         double y = row->row + (i + 0.5) / row->side, crossing[4];
         int count = image_reference_cross(shape, y, crossing);
         for (int c = 0; c + 1 < count; c += 2) {
-            // Sub-sample k lies at (k + 1/2) / side.
+            // Sub-sample k is at (k + 1/2) / side.
             int most = row->width * row->side;
             int from = (int)fmin(fmax(ceil(crossing[c] * row->side - 0.5), 0), most);
             int to = (int)fmin(fmax(ceil(crossing[c + 1] * row->side - 0.5), 0), most);
@@ -446,7 +450,7 @@ static Result add_shape(Row *row, const Shape *shape, uint32_t number, Error *er
     return RESULT_OK;
 }
 
-// Far to near; of two at the same depth the later shape is the farther one.
+// Order from far to near. At equal depth, the later shape counts as farther.
 static bool is_farther(const Hit *a, const Hit *b)
 {
     return a->inverse_w < b->inverse_w || (a->inverse_w == b->inverse_w && a->shape > b->shape);
@@ -458,7 +462,8 @@ static void sort_by_sample(Row *row)
     memset(row->first, 0, (samples + 1) * sizeof *row->first);
     for (size_t i = 0; i < row->count; ++i) ++row->first[row->hits[i].sample + 1];
     for (uint32_t s = 0; s < samples; ++s) row->first[s + 1] += row->first[s];
-    for (size_t i = 0; i < row->count; ++i) // counts `first` up to the next one's
+    // Moves `first` of each sub-sample to the beginning of the next one.
+    for (size_t i = 0; i < row->count; ++i)
         row->sorted[row->first[row->hits[i].sample]++] = row->hits[i];
     memmove(row->first + 1, row->first, samples * sizeof *row->first);
     row->first[0] = 0;
@@ -472,7 +477,7 @@ static void sort_by_sample(Row *row)
         }
 }
 
-// Mean over the pixel, linear and premultiplied.
+// The mean over the pixel; linear, premultiplied.
 static void average_pixel(const Row *row, int x, const double background[4], double mean[4])
 {
     memset(mean, 0, 4 * sizeof *mean);
@@ -501,8 +506,7 @@ static void write_row(const Row *row, const double background[4], Image *image)
     }
 }
 
-// An image that is being drawn: threads take rows of pixels in turn, and no row
-// knows of another.
+// An image being drawn. Threads take rows of pixels in turn; rows are independent.
 typedef struct Drawing {
     const Shapes *shapes;
     const double *background; // [4], linear, premultiplied

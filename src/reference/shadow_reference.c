@@ -38,7 +38,8 @@ static uint32_t column_of(const ShadowReference *reference, int axis, double val
     return (uint32_t)fmin(fmax(column, 0), reference->side - 1);
 }
 
-// Counts the shapes of each cell up from where `next` begins, or, with `shapes`, enters them.
+// Adds each shape to the cells that it covers. next[cell] is advanced for each shape; if `shapes`
+// is not NULL, the shape's number is stored there.
 static void fill_cells(const ShadowReference *reference, uint32_t *next, uint32_t *shapes)
 {
     for (uint32_t i = 0; i < reference->shapes.count; ++i) {
@@ -69,7 +70,8 @@ static Result make_grid(ShadowReference *reference, Error *error)
     reference->cell_shapes = malloc(((size_t)first[cells + 1] + 1) * sizeof(uint32_t));
     if (!reference->cell_shapes)
         return error_set(error, RESULT_FAILED, "no memory for %u shapes", first[cells + 1]);
-    fill_cells(reference, first + 1, reference->cell_shapes); // counts up to the next cell's
+    // Advances first[cell + 1] to the end of the cell.
+    fill_cells(reference, first + 1, reference->cell_shapes);
     return RESULT_OK;
 }
 
@@ -100,7 +102,7 @@ double shadow_reference_light(const ShadowReference *reference, const double poi
         double cell = (place[k] - reference->low[k]) / reference->step[k];
         if (!(cell >= 0 && cell <= reference->side)) return 1;
     }
-    double limit = clearance - place[2]; // of inverse_w: what is greater is nearer
+    double limit = clearance - place[2]; // as inverse_w, which is larger for nearer shapes
     if (reference->view.perspective) limit = limit < 0 ? -1 / limit : INFINITY;
     uint32_t cell =
         column_of(reference, 1, place[1]) * reference->side + column_of(reference, 0, place[0]);
@@ -115,7 +117,7 @@ double shadow_reference_light(const ShadowReference *reference, const double poi
     return light;
 }
 
-// The vertices whose light is sought: threads take strands in turn.
+// The vertices to be lit. Threads take strands in turn.
 typedef struct Filling {
     const ShadowReference *reference;
     const ReferenceItem *item;
@@ -123,7 +125,8 @@ typedef struct Filling {
     int parts;
 } Filling;
 
-// Unit, square to the fibre from `a` to `b` and to the light's way there.
+// The unit vector that is perpendicular to the fibre from `a` to `b` and to the direction of the
+// light.
 static void find_across(const ShadowReference *reference, const float a[3], const float b[3],
                         double across[3])
 {
@@ -141,7 +144,7 @@ static void find_across(const ShadowReference *reference, const float a[3], cons
     for (int k = 0; k < 3; ++k) across[k] /= fmax(sqrt(length), 1e-30);
 }
 
-// Over the half of the segment from vertex `here` that lies before or behind it.
+// The sum of the light at points on the half of a segment that is nearer to its vertex `here`.
 static double sum_half(const Filling *filling, const float here[3], const float other[3],
                        double radius)
 {

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-// Chunks as in the PNG specification (third edition), sections 5.3 and 11.3.
+// Whether no chunk changes how the colours display. Chunks: PNG specification (third edition),
+// sections 5.3 and 11.3.
 bool picture_is_plain(const Bytes *file)
 {
     static const char *const CHANGES[] = {"gAMA", "cHRM", "iCCP", "cICP", "acTL"};
@@ -28,7 +29,7 @@ static uint8_t round_level(double level)
     return (uint8_t)(fmin(fmax(level, 0), 255) + 0.5);
 }
 
-// A pixel of an IMAGE_FLOAT.
+// Converts one pixel of an IMAGE_FLOAT.
 static void convert_float(uint8_t *to, const float *from, int channels)
 {
     double alpha = channels == 4 ? (double)from[3] : 1;
@@ -55,7 +56,7 @@ Result picture_create(Image *picture, const Image *image, Error *error)
     return RESULT_OK;
 }
 
-// The mean of a picture's pixels in [begin[0], end[0]) x [begin[1], end[1]).
+// The mean of the picture's pixels in [begin[0], end[0]) x [begin[1], end[1]).
 static void average(uint8_t *to, const Image *picture, const int begin[2], const int end[2],
                     const double linear[256])
 {

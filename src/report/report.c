@@ -12,9 +12,9 @@
 
 // --- Base64 (RFC 4648, section 4).
 
-enum { BASE64_BLOCK = 3 * 4096 }; // bytes at a time
+enum { BASE64_BLOCK = 3 * 4096 }; // bytes converted at a time
 
-// `size` bytes as 4 characters for every 3 of them or part of it; returns how many characters.
+// Writes 4 characters for every 3 bytes, the last group padded; returns the number of characters.
 static size_t encode_base64(char *to, const uint8_t *from, size_t size)
 {
     static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -50,7 +50,8 @@ static const ReportText *find_text(const char *kind, const char *suffix)
     return text;
 }
 
-// json_dump_callback_t: no "<" is left that could end the block or begin a comment in it.
+// A json_dump_callback_t. Escapes each "<", so that no text can end the script block or begin a
+// comment in it.
 static int put_json(const char *text, size_t size, void *stream)
 {
     for (size_t i = 0; i < size; ++i)
@@ -93,7 +94,8 @@ static void put_policy(FILE *stream, const char *kind)
             find_text("page", "js")->hash, find_text(kind, "js")->hash);
 }
 
-// What stands for {{WORD}} in page.html: "page.css" is that file's text, "kind.css" that of KIND.
+// Writes the replacement for {{WORD}} in page.html: "page.css" stands for the text of that file,
+// "kind.css" for the style sheet of KIND.
 static void put_word(const Report *report, const char *word, const char *kind, const json_t *data)
 {
     FILE *stream = report->file.stream;

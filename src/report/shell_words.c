@@ -37,7 +37,7 @@ static void put_escaped(FILE *stream, const char *word)
 
 void shell_put_word(FILE *stream, const char *word)
 {
-    // zsh takes =NAME at a word's beginning for a program's path
+    // zsh expands =NAME at the beginning of a word to a program's path
     if (*word && *word != '=' && strspn(word, PLAIN) == strlen(word)) {
         fputs(word, stream);
     } else if (!is_printable(word)) {
