@@ -24,7 +24,7 @@ void drawing_set_view(DrawParams *draw, const View *view, int width, int height)
     mat4 projection = {0}, from_world = {0};
     memcpy(projection, view->projection, sizeof projection);
     memcpy(from_world, view->view, sizeof from_world);
-    projection[1][1] = -projection[1][1]; // the image's first row is its top
+    projection[1][1] = -projection[1][1]; // rows of the image begin at the top
     glm_mat4_mul(projection, from_world, draw->clip_from_world);
     memcpy(draw->eye, view->eye, sizeof(vec3));
     draw->width = (float)width;
@@ -34,14 +34,14 @@ void drawing_set_view(DrawParams *draw, const View *view, int width, int height)
     draw->axis[0] = draw->width / 2;
     draw->axis[1] = draw->height / 2;
     draw->near_distance = view->near_distance;
-    // Clip z = z22 z + z32 with the distance before the eye w = -z.
+    // Clip-space z is z22 z + z32, where the distance in front of the eye is w = -z.
     draw->depth[0] = -view->projection[2][2];
     draw->depth[1] = view->projection[3][2];
 }
 
-// t = clamp((cos a - cos outer) / (cos inner - cos outer), 0, 1) with a the angle off the axis; the
-// shader knows the cosine off the way to the light, which is -cos a. Everything is inside for y =
-// 0.
+// The spot's falloff is clamp((cos a - cos outer) / (cos inner - cos outer), 0, 1), where a is the
+// angle to the axis. The shader computes it as x - y cos b from the cosine of the direction towards
+// the light, cos b = -cos a. With y = 0 everything is inside the cone.
 static void set_cone(const Light *light, float cone[4])
 {
     cone[0] = 1;
@@ -69,9 +69,9 @@ void drawing_set_lights(DrawParams *draw, const Light *lights, uint32_t count)
     }
 }
 
-// beta and alpha are of theta_h = (theta_i + theta_r) / 2: the lobe in theta_r is twice as wide and
-// tilted by twice as much. Scales tilt R to the root; TT and TRT follow from R (Marschner et al.
-// 2003, table 1).
+// beta and alpha are for theta_h = (theta_i + theta_r) / 2. In theta_r the lobe is twice as wide
+// and tilted by twice the angle. The scales tilt R towards the root; TT and TRT follow from R
+// (Marschner et al. 2003, table 1).
 static void set_lobes(const SectionParams *params, MaterialParams *material)
 {
     static const float WIDTH[] = {1, 0.5f, 2}, TILT[] = {-1, 0.5f, 1.5f};
@@ -113,10 +113,10 @@ MaterialParams drawing_material(const SectionParams *params, float radius)
     return material;
 }
 
-// --- A drawing.
+// --- A frame to draw.
 
-// The share of the light from everywhere that a matt mesh and its floor show. It has no shadows
-// there, and stands for what is left of such light between hair and mesh.
+// The share of the ambient light that a matt mesh and its floor receive. They have no ambient
+// occlusion; this constant stands for the ambient light that is left between hair and mesh.
 static const float MATT_AMBIENT = 0.15f;
 
 int drawing_display(const RendererOptions *options)
@@ -133,7 +133,7 @@ void drawing_background(const RendererOptions *options, float light[4])
     light[3] = options->background[3];
 }
 
-// The image without the band's values.
+// Fills `draw` for the whole image; the members for a band are set later.
 static void fill_draw_params(const RendererOptions *options, const DrawnMesh *mesh,
                              const RenderFrame *frame, DrawParams *draw)
 {
@@ -157,14 +157,14 @@ static void fill_draw_params(const RendererOptions *options, const DrawnMesh *me
     draw->seed = options->seed;
 }
 
-// Widens a box of the image by a point of the world; a point before the near plane makes it as
-// wide as can be.
+// Widens a box in the image by a point of the world. A point in front of the near plane widens it
+// without limit.
 static void add_to_box(DrawParams *draw, vec3 x, int box[4])
 {
     vec4 clip;
     const int far = 1 << 20;
     glm_mat4_mulv(draw->clip_from_world, (vec4){x[0], x[1], x[2], 1}, clip);
-    if (clip[3] < draw->near_distance) { // crosses the eye's plane: anywhere
+    if (clip[3] < draw->near_distance) { // may project to anywhere
         box[0] = box[1] = 0, box[2] = box[3] = far;
         return;
     }
@@ -207,8 +207,8 @@ static void find_boxes(Drawing *drawing, const RendererOptions *options, const D
     add_floor_to_box(&options->floor, &drawing->draw, drawing->base_box);
 }
 
-// The image's samples are those of the whole less the window's first: x' = x - first, and with
-// x = (X/W + 1)/2 size for both X' = X size/size' + W ((size - 2 first)/size' - 1).
+// A window's samples are those of the whole image shifted by its first sample: x' = x - first. With
+// x = (X/W + 1)/2 size for both, X' = X size/size' + W ((size - 2 first)/size' - 1).
 void drawing_set_window(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh,
                         const int place[2], const int size[2])
 {
@@ -230,7 +230,7 @@ void drawing_set_window(Drawing *drawing, const RendererOptions *options, const 
     find_boxes(drawing, options, mesh);
 }
 
-// Whether the lights ask for more than directions and one ambient colour.
+// Whether the shaders for directional lights and a single ambient colour are enough.
 static bool lights_are_simple(const RenderFrame *frame)
 {
     for (uint32_t i = 0; i < frame->light_count; ++i)
@@ -253,7 +253,7 @@ static bool uses_lod(const LodOptions *lod)
     return lod->end > lod->start || lod->width > 0;
 }
 
-// Share of an item's strands that is drawn.
+// The share of an item's strands that is drawn, by its level of detail.
 static float find_share(const RendererOptions *options, const Drawing *drawing,
                         const RenderItem *item)
 {
@@ -306,7 +306,7 @@ static void fit_albedo(Look *look, FibreTable table)
             fit[0] + (1 - fit[0]) * powf(fminf(look->mean_color[k], 1), fit[1]);
 }
 
-// `features`: those that do not depend on the item.
+// `features`: the features that do not depend on the item.
 static Result make_look(Drawing *drawing, const RendererOptions *options, const RenderItem *item,
                         unsigned features, Look *look, Error *error)
 {
@@ -334,7 +334,7 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Dra
                      const RenderFrame *frame, const RenderItem *items, uint32_t item_count,
                      Error *error)
 {
-    static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // by Aov
+    static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // [Aov]
     unsigned features = aovs[options->aov];
     if (options->aov == AOV_NONE)
         features = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) | shadow_features(options, mesh);

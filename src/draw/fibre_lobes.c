@@ -19,9 +19,9 @@ static float mix(float a, float b, float share)
     return a + share * (b - a);
 }
 
-// --- Making.
+// --- Tables.
 
-// The table's rows of one channel's colour.
+// Interpolates one channel's plane of the table for a colour.
 static void pick_color(FibreTable table, float color, float (*plane)[4])
 {
     float place = fminf(fmaxf(color, 0), 1) * (SCATTER_COLORS - 1), low = floorf(place);
@@ -31,7 +31,7 @@ static void pick_color(FibreTable table, float color, float (*plane)[4])
         for (int p = 0; p < 4; ++p) plane[i][p] = mix(a[i][p], b[i][p], place - low);
 }
 
-// 2 times the integral of R + TT + TRT over the azimuths 0 .. pi (trapezoids).
+// Twice the integral of R + TT + TRT over the azimuths 0 .. pi, by the trapezoidal rule.
 static float sum_azimuths(const float (*row)[4])
 {
     double sum = 0;
@@ -109,7 +109,7 @@ SIMD_INLINE float dot(const float t[3], const Ways *ways, int k)
     return t[0] * ways->axis[0][k] + t[1] * ways->axis[1][k] + t[2] * ways->axis[2][k];
 }
 
-// What the lanes are asked for.
+// The angles of W pairs of directions.
 typedef struct Angles {
     float sin_i[W], cos_i[W], sin_r[W], cos_r[W], turn[W];
 } Angles;
@@ -144,7 +144,7 @@ SIMD_INLINE void find_longitudinal(const FibreLobes *lobes, const Angles *a, int
                           a->cos_r[k] * tilt_cos + a->sin_r[k] * tilt_sin, sharpness, scale);
 }
 
-// The four nodes around each lane's place in the table.
+// The four table nodes around each lane's point.
 typedef struct Nodes {
     int at[W];
     float across[W], along[W];

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BUFFERS = 3 }; // of a batch
+enum { BUFFERS = 3 }; // of each batch
 
 static Result make_room(HairRead *read, uint32_t count, Error *error)
 {
@@ -29,7 +29,7 @@ static const void *copy(struct ReadBuffer *buffer)
     return buffer->copy;
 }
 
-// NULL on failure.
+// Maps a buffer for reading. NULL on failure.
 static const void *open_buffer(HairRead *read, const GpuBuffer *of)
 {
     struct ReadBuffer *buffer = &read->buffers[read->count];

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A triangle's corners in cells of the lattice, from its first corner.
+// A triangle's corners in lattice cells; at[0] is its first corner.
 typedef struct Corners {
     double at[3][3];
 } Corners;
@@ -27,13 +27,14 @@ static void place_vertex(const LightMesh *mesh, const LightLattice *lattice, uin
         place[k] = (double)(turned[k] - lattice->low[k]) / (double)lattice->side;
 }
 
-// Twice the area of (a, b, p) on the plane of axes u and v.
+// Twice the signed area of the triangle (a, b, p), projected to the plane of the axes u and v.
 static double side_of(const double a[3], const double b[3], double pu, double pv, int u, int v)
 {
     return (b[u] - a[u]) * (pv - a[v]) - (b[v] - a[v]) * (pu - a[u]);
 }
 
-// Where the line through (pu, pv) along `axis` meets the triangle; false if it misses.
+// The depth at which the line through (pu, pv) along `axis` meets the triangle. False if it misses
+// the triangle.
 static bool meet(const Corners *c, int axis, double pu, double pv, double *depth)
 {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -46,7 +47,7 @@ static bool meet(const Corners *c, int axis, double pu, double pv, double *depth
     return true;
 }
 
-// Of numbers, without a call.
+// fmin without a function call; the arguments are not NaN.
 static double lesser(double a, double b)
 {
     return a < b ? a : b;
@@ -66,8 +67,8 @@ static double most_of(const Corners *c, int k)
     return greater(greater(c->at[0][k], c->at[1][k]), c->at[2][k]);
 }
 
-// Closes the way from the middle before to the middle of the cell that the triangle crosses on the
-// line of cells (u, v).
+// Blocks the way between two neighbouring cells on line (u, v): the triangle crosses it at `depth`,
+// between the centres of both cells. The entry of the second cell stands for the way to it.
 static void close_way(float *open, const LightLattice *lattice, int axis, const int line[2],
                       double depth)
 {
@@ -141,7 +142,7 @@ float light_blocks_march(const LightBlocks *blocks, const LightLattice *lattice,
     for (int step = 1; (float)step <= limit + 0.5f; ++step) {
         for (int k = 0; k < 3; ++k) next[k] = cell[k] + (int)lroundf((float)step * way[k] / main);
         for (int n = 0; n < 3; ++n) {
-            int k = (axis + 1 + n) % 3; // across before along
+            int k = (axis + 1 + n) % 3; // the other axes before the main axis
             if (next[k] == at[k]) continue;
             int far = next[k] > at[k] ? next[k] : at[k];
             if (next[k] < 0 || next[k] >= lattice->count[k]) return passed;
@@ -189,7 +190,7 @@ float light_path_follow(const LightPath *path, const LightBlocks *blocks,
     const int *n = lattice->count;
     const float *open = blocks->open + ((ptrdiff_t)cell[2] * n[1] + cell[1]) * n[0] + cell[0];
     int count = path->count;
-    for (int k = 0; k < 3; ++k) { // the step that leaves the lattice crosses nothing
+    for (int k = 0; k < 3; ++k) { // the step out of the lattice is not blocked
         int left = path->up[k] ? n[k] - 1 - cell[k] : cell[k];
         count = path->until[k][left] < count ? path->until[k][left] : count;
     }

@@ -9,14 +9,14 @@
 
 enum { BOX = LIGHT_BOX_WORDS };
 
-// Rows of the rotation by the smallest angle that turns `from` into `to` (unit).
+// Rows of the rotation by the smallest angle that turns `from` into `to` (unit vectors).
 static void find_turn(const float from[3], const float to[3], float turn[3][3])
 {
     double v[3] = {(double)from[1] * to[2] - (double)from[2] * to[1],
                    (double)from[2] * to[0] - (double)from[0] * to[2],
                    (double)from[0] * to[1] - (double)from[1] * to[0]},
            c = (double)from[0] * to[0] + (double)from[1] * to[1] + (double)from[2] * to[2];
-    if (c < -0.999999) { // half a turn about an axis square to `from`
+    if (c < -0.999999) { // rotate by 180 degrees about an axis perpendicular to `from`
         double axis[3] = {-(double)from[1], (double)from[0], 0}, length = hypot(axis[0], axis[1]);
         if (length < 1e-6) axis[0] = 1, length = 1;
         for (int i = 0; i < 3; ++i)
@@ -56,7 +56,8 @@ void light_field_find_turn(LightField *field, const GridScene *scene)
     const float light[3] = {ORDINATE[0][ORDINATE_OF_LIGHT], ORDINATE[1][ORDINATE_OF_LIGHT],
                             ORDINATE[2][ORDINATE_OF_LIGHT]};
     float way[3] = {-light[0], -light[1], -light[2]};
-    // Of a lamp the way from the origin will do: only that it is steady matters.
+    // For a lamp, the direction from the origin is good enough: the lattice only needs a direction
+    // that stays the same.
     if (scene->draw->light_count) light_field_light(scene->draw, 0, SIDEWAYS, way);
     const float down[3] = {-way[0], -way[1], -way[2]};
     find_turn(down, light, field->lattice.turn);
@@ -127,7 +128,7 @@ Result light_field_find_walls(LightField *field, const GridScene *scene, Error *
            all = 3 * wide * ((size_t)n[1] + 2) * ((size_t)n[2] + 2);
     field->walled = scene->blocks != NULL;
     if (!field->walled) return RESULT_OK;
-    // The blocks' lattice must be this one.
+    // The blocks must be those of this lattice.
     TRY(light_blocks_find(scene->blocks, &field->lattice, error));
     if (field->wall_room < all) {
         free(field->walls);

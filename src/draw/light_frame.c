@@ -16,7 +16,7 @@ LightView light_frame_view(const Light *light, const float middle[3])
         way[k] =
             view.perspective ? (double)middle[k] - view.origin[k] : -(double)light->direction[k];
     }
-    if (way[0] == 0 && way[1] == 0 && way[2] == 0) way[1] = -1; // a lamp in the middle
+    if (way[0] == 0 && way[1] == 0 && way[2] == 0) way[1] = -1; // the lamp is at the centre
     double3_normalize(way);
     across[fabs(way[1]) < 0.9 ? 1 : 0] = 1;
     double3_cross(across, way, view.axis[0]);
@@ -53,7 +53,9 @@ bool light_frame_place(const LightView *view, const double x[3], double place[3]
     return true;
 }
 
-// Row k of the window (0, 1) is that of the view in texels.
+// Scales and shifts rows 0 and 1 of the view so that they give coordinates in texels. The texel
+// size is rounded up to an eighth of an octave and the shift to whole texels, so that small
+// movements of the box do not change the map.
 static void set_window(LightFrame *frame, const double low[2], const double high[2], int side,
                        int margin)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tables of a light field: how fibres scatter, from one ordinate to another, from a light and
-// to the eye.
+// Tables of a light field: how fibres scatter from a light to each ordinate, from one ordinate to
+// another, and from the ordinates to the eye.
 #include "base/parallel.h"
 #include "draw/light_field.h"
 
@@ -24,8 +24,8 @@ static void find_same_ways(const float way[3], float factor, Ways *ways)
 
 // --- From a light, and between ordinates.
 
-// What a fibre of the class sends along each direction of light 1 from `way` (unit, towards it),
-// times the width that it shows there.
+// The light that a fibre of the class scatters to each ordinate from light of radiance 1 that comes
+// from `way` (unit vector towards the light), times the fibre's visible width in that direction.
 static void make_first_row(const FibreLobes *lobes, const float way[3], int class,
                            float row[GRID_WIDE])
 {
@@ -78,7 +78,7 @@ Result light_field_make_first(LightField *field, const GridScene *scene, Error *
     return RESULT_OK;
 }
 
-// Rows are scaled so that light 1 from everywhere leaves as the fibre's albedo.
+// Scales rows so that uniform incident light of radiance 1 leaves as the fibre's albedo.
 static void make_scatter_table(const FibreLobes *lobes, int class,
                                float (*table)[ORDINATES][ORDINATES])
 {
@@ -124,7 +124,7 @@ static void make_scatter(void *data, int part)
     }
 }
 
-// Adds a class, of its kind, to those whose table is to be made.
+// Adds a class to the list of classes of its kind whose tables must be computed.
 static void need_scatter(MakeScatter *make, int class)
 {
     GridKind *kind = &make->field->kinds[class / TANGENTS];
@@ -165,7 +165,7 @@ static void find_node_tangent(int node, float t[3])
     for (int k = 0; k < 3; ++k) t[k] /= length;
 }
 
-// Scaled so that all directions together give the fibre's albedo.
+// Scales the row so that all ordinates together give the fibre's albedo.
 static void make_row(const GridKind *kind, int node, float row[GRID_WIDE])
 {
     float t[3], sum[3] = {0}, along = 0, albedo[3];
@@ -192,7 +192,7 @@ static void make_row(const GridKind *kind, int node, float row[GRID_WIDE])
                 row[(g * 3 + c) * LANES + l] *= albedo[c] / fmaxf(sum[c], 1e-12f);
 }
 
-// A node is in each of the patches that it is a corner or an edge of.
+// Stores a node's row in all patches that have the node at a corner or on an edge.
 static void put_row(GridKind *kind, int node, const float row[GRID_WIDE])
 {
     int x = node % NODES_ROW, y = node / NODES_ROW;

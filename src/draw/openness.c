@@ -11,11 +11,11 @@
 enum { SMOOTHINGS = 4 };
 
 typedef struct Field {
-    LightLattice lattice; // axes as the mesh's frame
+    LightLattice lattice; // aligned with the mesh's frame
     LightBlocks blocks;
-    float *depth; // [cells]: optical depth of hair along a side
-    float *seen;  // [cells][ORDINATES]: share of light that comes in against each; < 0: not asked
-                  // for yet
+    float *depth; // [cells]: optical depth of hair over the length of a side
+    float *seen;  // [cells][ORDINATES]: share of the light that arrives from the opposite of each
+                  // ordinate; < 0: not computed yet
 } Field;
 
 static void widen(float low[3], float high[3], const float x[3])
@@ -26,7 +26,7 @@ static void widen(float low[3], float high[3], const float x[3])
     }
 }
 
-// With a cell to spare on each side.
+// Places the lattice around mesh and hair, with a spare cell on each side.
 static void place_lattice(LightLattice *lattice, const Mesh *mesh, const OpennessHair *hair,
                           uint32_t hair_count)
 {
@@ -58,8 +58,8 @@ static bool is_inside(const LightLattice *lattice, const int cell[3])
     return true;
 }
 
-// Optical depth along a side h of a cell: the sum of 2 r length sin(angle) / h^2, where the sine
-// has the mean of all directions, pi / 4.
+// Adds the optical depth of hair over the length of a side h of a cell: the sum of 2 r length
+// sin(angle) / h^2. The sine is replaced by its mean over all directions, pi / 4.
 static void fill_hair(Field *field, const OpennessHair *hair)
 {
     const LightLattice *lattice = &field->lattice;
@@ -102,7 +102,7 @@ static Result fill(Field *field, const Mesh *mesh, const OpennessHair *hair, uin
     return light_blocks_find(&field->blocks, &field->lattice, error);
 }
 
-// The share of light that hair lets through from the middle of a cell along the unit vector `way`.
+// The transmittance of hair from the centre of a cell along the unit vector `way`.
 static float pass_hair(const Field *field, const int cell[3], const float way[3])
 {
     float main = fmaxf(fmaxf(fabsf(way[0]), fabsf(way[1])), fabsf(way[2])), depth = 0;
@@ -126,8 +126,8 @@ static const float *see(Field *field, const int cell[3])
     return seen;
 }
 
-// What a surface with the unit normal n sees from a cell; -1 from one that sees nothing anywhere,
-// as those inside of the mesh do.
+// The openness of a surface with the unit normal n in a cell. -1 if no light reaches the cell from
+// any direction, as inside the mesh.
 static float see_from(Field *field, const int cell[3], const float n[3])
 {
     if (!is_inside(&field->lattice, cell)) return 1;
@@ -143,7 +143,8 @@ static float see_from(Field *field, const int cell[3], const float n[3])
     return any > 0 ? sum / whole : -1;
 }
 
-// Between the middles of the eight cells around the point a side above the surface.
+// Interpolates between the centres of the eight cells around the point that is one side h above the
+// surface. Cells without light are left out.
 static float see_at(Field *field, const float x[3], const float n[3])
 {
     const LightLattice *lattice = &field->lattice;
@@ -170,7 +171,7 @@ static float see_at(Field *field, const float x[3], const float n[3])
     return weights > 0 ? sum / weights : 0;
 }
 
-// Each vertex takes the mean of itself and its neighbours.
+// Replaces each vertex's value by the mean of its own and its neighbours' values.
 static Result smooth(float *open, const Mesh *mesh, Error *error)
 {
     float *sum = malloc((size_t)mesh->vertex_count * 2 * sizeof *sum);

@@ -45,7 +45,7 @@ static void make_tangent(int class)
     }
 }
 
-// --- Look-up by the squares of a cube's faces.
+// --- Look-up of the nearest ordinate, by squares on the faces of a cube.
 
 enum { SQUARES = ORDINATE_SQUARES };
 uint8_t TANGENT_NEAREST[6][SQUARES][SQUARES];

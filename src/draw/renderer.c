@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The options as they are drawn by: with what an AOV asks for.
+// The options that are really drawn with: an AOV changes some of them.
 static RendererOptions settle(const RendererOptions *asked)
 {
     RendererOptions options = *asked;
@@ -155,7 +155,8 @@ static void add_counts(RendererCounts *sum, const RendererCounts *counts)
     if (counts->pool_bytes > sum->pool_bytes) sum->pool_bytes = counts->pool_bytes;
 }
 
-// What is late elsewhere is not here: the next tile has the same target.
+// Reads a tile back at once. Unlike a whole image, it cannot be read back one frame later, because
+// the next tile uses the same render target.
 static Result finish_tile(Renderer *renderer, int sent, Error *error)
 {
     const DrawBackend *backend = renderer->backend;
@@ -194,7 +195,7 @@ static Result draw_frame(Renderer *renderer, Image *image, Error *error)
                                               : draw_tiles(renderer, image, error);
 }
 
-// Strands that others stand for.
+// The number of strands that are not drawn because other strands represent them (level of detail).
 static uint64_t count_thinned(const BackendFrame *frame)
 {
     uint64_t count = 0;

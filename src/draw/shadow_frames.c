@@ -5,12 +5,12 @@
 #include <string.h>
 
 enum {
-    HAIR_MARGIN = 3, // texels at the edges of a map that hair leaves free
-    MESH_MARGIN = 6, // texels at the edges that stay empty: all that a point beside it looks at
+    HAIR_MARGIN = 3, // texels at the edges of a map without hair
+    MESH_MARGIN = 6, // empty texels at the edges: a point outside the map samples only these
 };
 
-static const double UNIT = 1 << 16; // steps of sums for one fibre
-static const double SUM_MAX = 2e9;  // of those steps: sums do not overflow
+static const double UNIT = 1 << 16; // steps of the integer sums for one fibre
+static const double SUM_MAX = 2e9;  // largest sum, in steps, without overflow
 
 void shadow_frames_begin(ShadowFrames *frames, const Light *lights, uint32_t light_count,
                          const float middle[3], const ShadowMesh *mesh, uint64_t revision)
@@ -93,7 +93,7 @@ static void empty_box(double box[6])
     for (int k = 0; k < 3; ++k) box[k] = LIGHT_FRAME_FAR, box[k + 3] = -LIGHT_FRAME_FAR;
 }
 
-// Widens the box to the mesh's.
+// Widens the box to include the mesh's box.
 static void add_mesh_box(const ShadowMesh *mesh, const LightView *view, double box[6])
 {
     for (int corner = 0; corner < 8; ++corner) {
@@ -114,9 +114,10 @@ static void add_mesh_box(const ShadowMesh *mesh, const LightView *view, double b
     }
 }
 
-// A texel's depth is that of its middle: on a surface that the light meets at 45 degrees it is off
-// by a texel. Two of them by depth, and as much as a texel and a half along the normal. Before a
-// lamp a texel is as wide as half-way, and its depth as steep as at the far end: less elsewhere.
+// Depth bias. A texel stores the depth at its centre; on a surface at 45 degrees to the light the
+// error is one texel. The bias is two texels in depth, and 1.5 texels along the normal. For a lamp,
+// the texel size is taken half-way between near and far, and the slope of depth at the far end,
+// where it is least.
 static void set_mesh_frame(ShadowParams *params, int map, const LightView *view,
                            const double box[6])
 {
@@ -132,10 +133,10 @@ static void set_mesh_frame(ShadowParams *params, int map, const LightView *view,
     params->mesh_lift = fmaxf(params->mesh_lift, (float)(1.5 * texel));
 }
 
-// The mesh's window: around the mesh alone, so that it stays while the head does; what lies beside
-// or behind it has no mesh before it. At least a tenth as deep as wide, since depths of a mesh that
-// is flat before the light would be nothing but rounding. Before a lamp, which may stand in the
-// mesh's box, around hair as well.
+// The window of the mesh's map encloses only the mesh, so the map can be kept while the head is
+// still; points outside it are not shadowed by the mesh. Its depth range is at least a tenth of its
+// width: otherwise the depths of a mesh that is flat towards the light would be mere rounding
+// errors. A lamp may stand inside the mesh's box, so its window encloses the hair as well.
 static void place_mesh(ShadowParams *params, int map, const ShadowMesh *mesh, const LightView *view,
                        double box[6])
 {
@@ -158,7 +159,8 @@ ShadowMeshKey shadow_frames_mesh_key(const ShadowFrames *frames)
 
 // --- Hair.
 
-// What approximated maps take for the mean fibre, which lets a little through.
+// The mean fibre of approximated shadow maps: fibres per optical depth, and the transmittance of
+// one fibre, which is at least 1/1000.
 static void find_mean_fibre(const ShadowFrames *frames, float spacing, ShadowParams *params)
 {
     const double least_left = 1e-3;
@@ -168,7 +170,8 @@ static void find_mean_fibre(const ShadowFrames *frames, float spacing, ShadowPar
     params->passed = (float)log2(fmax(1 - frames->opacity / weight, least_left));
 }
 
-// The smallest step of sums that cannot overflow, were all segments in one texel.
+// Steps of the sums for one fibre: as many as possible without overflow if all segments lie in one
+// texel.
 static float find_unit(const ShadowFrames *frames, bool perspective, double texels)
 {
     double plain = perspective ? frames->plain : fmin(frames->plain_width * texels, frames->plain);

@@ -8,7 +8,7 @@ static int64_t divide_up(int64_t a, int64_t b)
     return (a + b - 1) / b;
 }
 
-// Into how many parts of at most `most` an extent goes; at least 1.
+// The number of parts of at most `most` pixels that an extent is cut into; at least 1.
 static int parts_of(int extent, int64_t most)
 {
     return (int)divide_up(extent, most < 1 ? 1 : most);

@@ -10,7 +10,7 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-// To whole runs in every shard.
+// Rounds up so that every shard has a whole number of runs.
 static int64_t round_up_nodes(int64_t nodes)
 {
     return (nodes + SHARD_STEP - 1) / SHARD_STEP * SHARD_STEP;

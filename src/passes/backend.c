@@ -19,7 +19,7 @@ static bool has_base(const Passes *passes)
     return base_layer_is_needed(&passes->base, &passes->options->floor);
 }
 
-// What drawing over mesh or floor needs, if there is any.
+// Creates what drawing mesh and floor needs, if the frame has any.
 static Result make_base(Passes *passes, Error *error)
 {
     if (!has_base(passes)) return RESULT_OK;
@@ -177,7 +177,7 @@ static CullBase cull_base(const Passes *passes)
     return (CullBase){has_base(passes) ? &passes->target : NULL, passes->base.depth_version};
 }
 
-// The ribbons of all hair.
+// Projects all hair to ribbons.
 static Result project(Passes *passes, const BackendFrame *frame, Error *error)
 {
     const RibbonsBase base = {cull_base(passes), frame->drawing->base_box};
@@ -201,14 +201,14 @@ static Result shade(void *state, const BackendFrame *frame, Error *error)
     drawing_upload(frame->drawing);
     set_state(passes, drawing->draw.background);
     TRY(base_layer_draw(&passes->base, &scene, &passes->target, timer, error));
-    if (is_quads(passes)) return RESULT_OK; // in bands, when they are drawn
+    if (is_quads(passes)) return RESULT_OK; // quads project each band when it is drawn
     gpu_timer_begin(timer, "draw_project");
     Result result = project(passes, frame, error);
     gpu_timer_end(timer);
     return result;
 }
 
-// --- By compute.
+// --- compute.
 
 static void count_compute(Passes *passes, const ComputeCounts *counts)
 {
@@ -261,12 +261,12 @@ static Result settle_compute(Passes *passes, Error *error)
     return RESULT_OK;
 }
 
-// --- By quads.
+// --- quads.
 
 static Result settle_quads(Passes *passes, const BackendFrame *frame, Error *error)
 {
     if (!passes->quads.unsettled) return RESULT_OK;
-    // Others may have drawn since.
+    // Other renderers may have drawn since, so set the state again.
     if (passes->options->shadow.kind != SHADOW_NONE) shadows_bind(&passes->shadow);
     (has_base(passes) ? glEnable : glDisable)(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
@@ -274,7 +274,7 @@ static Result settle_quads(Passes *passes, const BackendFrame *frame, Error *err
                         passes->set.timer.timer, &passes->counts, error);
 }
 
-// --- By either.
+// --- Both rasterisers.
 
 static Result composite(void *state, const BackendFrame *frame, Image *image, Error *error)
 {

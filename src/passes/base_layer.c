@@ -80,7 +80,8 @@ Result base_layer_build(BaseLayer *base, bool mesh, FloorKind floor, Shadow shad
                : shader_build_draw(finish, "draw/screen.vert", "draw/base.frag", defines, error);
 }
 
-// What is drawn is cut by the box within the target, some samples wider; empty beside it.
+// Restricts drawing to the box, widened by some samples and clipped to the target. Nothing is drawn
+// if the box is outside.
 static void scissor(const RenderTarget *target, const int box[4])
 {
     enum { WIDER = 2 };
@@ -117,7 +118,8 @@ static void draw_surfaces(const BaseLayer *base, const BaseScene *scene, const R
     glDisable(GL_DEPTH_TEST);
 }
 
-// Only where there is mesh: a triangle behind everything is before nothing else.
+// Lights pixels of the mesh only: the triangle lies at the far plane and the depth test is
+// GL_GREATER, so pixels without mesh are skipped.
 static void light_mesh(const BaseLayer *base, const BaseScene *scene, const RenderTarget *target)
 {
     if (!base->mesh.triangle_count) return;
@@ -134,7 +136,7 @@ static void light_mesh(const BaseLayer *base, const BaseScene *scene, const Rend
     glDisable(GL_DEPTH_TEST);
 }
 
-// The background, and over it mesh and floor; their depth, too: what hides hair.
+// Combines background, mesh and floor. Also writes their depth, which hides hair.
 static void finish(const BaseLayer *base, const BaseScene *scene, FloorKind floor,
                    const RenderTarget *target)
 {

@@ -6,9 +6,10 @@
 
 #include "glsl/draw/draw.h"
 
-// CPU drivers end loops silently after 65,535 turns in all. Of n ribbons of a tile a lane that
-// sorts takes n turns for runs of 64, and n / 64 times 8, 9, ... for each merge of two runs: 57,000
-// for 20,000. Compositing takes fewer, binning one for a tile of a ribbon.
+// llvmpipe silently ends loops after 65,535 iterations in all. For a tile with n ribbons, a lane
+// that sorts makes n iterations for runs of 64, and n / 64 times 8, 9, ... iterations for each
+// merge of two runs: 57,000 for n = 20,000. Compositing makes fewer; binning makes one for each
+// tile of a ribbon.
 enum { LONGEST_ON_CPU = 20000, TILES_ON_CPU = 60000 };
 
 static Result build(Compute *compute, int over_base, Error *error)
@@ -124,7 +125,8 @@ static void draw_band(Compute *compute, const Ribbons *ribbons, const RenderTarg
     gpu_timer_end(timer);
 }
 
-// After a band that did not fit: more room or, where there can be none, fewer rows.
+// After a band whose lists were too short: grows the lists or, if the driver does not allow that,
+// halves the number of rows.
 static Result make_it_fit(Compute *compute, const ComputeUse *use, int *rows, Error *error)
 {
     bool grown;
@@ -138,7 +140,8 @@ static Result make_it_fit(Compute *compute, const ComputeUse *use, int *rows, Er
     return RESULT_OK;
 }
 
-// One band, and after it `use`: whether it fits, or what comes next. See compute_draw.
+// Checks a drawn band. If its lists were long enough, goes to the next band; if not, prepares
+// another attempt. See compute_draw.
 static Result judge_band(Compute *compute, const ComputeUse *use, int *row, int *rows,
                          ComputeCounts *counts, Error *error)
 {
@@ -174,7 +177,7 @@ Result compute_draw(Compute *compute, const Ribbons *ribbons, const RenderTarget
     return RESULT_OK;
 }
 
-// --- An image that is trusted to fit.
+// --- An image in one band, whose lists are expected to be long enough. They are checked later.
 
 enum { USE_AT = BLOCK_COUNT_WORDS, TALLY_AT = USE_AT + TILE_USE_WORDS, LATE_BYTES = 4 * TALLY_AT };
 

@@ -104,7 +104,7 @@ void compute_bins_fill(ComputeBins *bins, const GpuBuffer *ribbons, const GpuBuf
     gpu_buffer_bind_texture(ribbons, BIND_RIBBONS);
     gpu_buffer_bind_texture(keys, BIND_KEYS);
     gpu_buffer_bind_texture(&bins->sorted, BIND_SORTED);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT); // of the ribbons
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT); // the projection wrote the ribbons
     list(bins, bins->count, slots, first, end);
     place(bins, first, end);
     list(bins, bins->fill, slots, first, end);
@@ -133,7 +133,7 @@ ComputeUse compute_bins_use(const uint32_t *words)
     // cppcheck-suppress ctuArrayIndex // it does not know TILE_USE_WORDS
     uint64_t coarse = (uint64_t)words[TILE_USE_COARSE] << 10;
     ComputeUse use = {.pairs = words[TILE_USE_PAIRS], .longest = words[TILE_USE_LONGEST]};
-    if (coarse > use.pairs) use.pairs = coarse; // which began at 0 again
+    if (coarse > use.pairs) use.pairs = coarse; // the 32-bit count wrapped around
     return use;
 }
 

@@ -5,7 +5,7 @@
 
 #include "glsl/draw/draw.h"
 
-enum { HEAD_WORDS = 1 }; // of `listed`, before the rows
+enum { HEAD_WORDS = 1 }; // words of `listed` before the rows
 
 static Result build_hide(Cull *cull, Error *error)
 {

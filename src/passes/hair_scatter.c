@@ -42,7 +42,7 @@ static Result make_room(HairScatter *scatter, uint32_t count, Error *error)
                          : error_set(error, RESULT_FAILED, "no memory for %u batches", count);
 }
 
-enum { SEEN_BYTES = 3 * sizeof(float) }; // of a point: linear RGB
+enum { SEEN_BYTES = 3 * sizeof(float) }; // a point's linear RGB
 
 static Result reserve_seen(HairScatter *scatter, uint32_t i, const HairBatch *batch, size_t points,
                            Error *error)
@@ -102,7 +102,7 @@ static Result find_light(HairScatter *scatter, const BackendFrame *frame, Shadow
     return RESULT_OK;
 }
 
-// Whether the light that the last image saw is that of this one.
+// Whether the light that was gathered for the last image is valid for this one.
 static bool is_seen(const HairScatter *scatter, const Shadows *shadows, const BackendFrame *frame)
 {
     const DrawParams *draw = &frame->drawing->whole;

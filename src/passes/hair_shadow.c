@@ -7,13 +7,13 @@
 #include <string.h>
 
 enum {
-    STRIP = 8,          // divides the side of a map
-    PART_VERTICES = 64, // that one lane walks
+    STRIP = 8,          // divides the side length of a map
+    PART_VERTICES = 64, // vertices that one lane processes
     PART_SEGMENTS = 8,
     BOX_WORDS = 6
 };
 
-// What a program of the deep maps or of the first depths is built for.
+// Which maps a program makes (a macro of the shaders).
 enum { FIRSTS = 0, DEEP = 1, COARSE_FIRSTS = 2 };
 
 static Result build(GLuint *program, const char *file, int group, int kind, unsigned variant,
@@ -85,7 +85,7 @@ void hair_shadow_destroy(HairShadow *hair)
     *hair = (HairShadow){0};
 }
 
-// What is read later.
+// Buffers that other passes read later.
 static Result make_maps(HairShadow *hair, int maps, Error *error)
 {
     if (hair->maps < maps) {
@@ -102,7 +102,7 @@ static Result make_maps(HairShadow *hair, int maps, Error *error)
                               4 * texels * SHADOW_LAYERS, GL_R32UI, error);
 }
 
-// What shaders make them with.
+// Buffers that are only used while maps are made.
 static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
 {
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
@@ -135,8 +135,8 @@ Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Erro
     return RESULT_OK;
 }
 
-// Runs a pass over all ribbons, in parts of `part` of a strand's points: programs[CAST_VARIANTS]
-// or, if that is NULL, the one of all particles.
+// Runs a pass over all ribbons. A lane processes `part` points of a strand. `programs` has
+// CAST_VARIANTS programs; if it is NULL, the program for bounding boxes runs on all particles.
 static void cast(HairShadow *hair, ShadowCasters casters, const CastParams *params,
                  const GLuint *programs, uint32_t part)
 {
@@ -193,7 +193,7 @@ void hair_shadow_find_boxes(HairShadow *hair, const ShadowFrames *frames, Shadow
     if (frames->count) find_boxes(hair, frames, casters, boxes);
 }
 
-// First depths, in texels that are `coarse` of the map's wide.
+// Draws first depths to texels that are `coarse` texels of the map wide.
 static void draw_firsts(HairShadow *hair, ShadowCasters casters, const CastParams *params,
                         int coarse)
 {

@@ -7,15 +7,15 @@
 #include "glsl/kernel/cell.h"
 
 enum {
-    ORDINATE_GROUP = 64, // lanes of a work group with a lane for each ordinate
+    ORDINATE_GROUP = 64, // a lane for each ordinate, rounded up
     SWEEP_GROUP = 512,
 };
 
-// How a pass is built: what its file's macros are, and what a lane has.
+// How a pass is built: the values of its file's macros, and what a lane processes.
 typedef struct PassShape {
     const char *file;
-    int items, shadow, beside, walled, group; // group 0: a strand a lane, -1: a cell
-    bool hair;                                // it has variants
+    int items, shadow, beside, walled, group; // group 0: a strand for each lane, -1: a cell
+    bool hair;                                // has variants for hair
 } PassShape;
 
 static const PassShape SHAPES[LIGHT_PASSES] = {

@@ -11,7 +11,7 @@ _Static_assert(LIGHT_ORDINATES == ORDINATES && LIGHT_LANES == ORDINATE_LANES &&
                    LIGHT_KINDS == LIGHT_GRID_KINDS,
                "numbers of the grid");
 
-static const int64_t SUMS_MOST = 128 << 20; // bytes: of more cells sums are made in turns
+static const int64_t SUMS_MOST = 128 << 20; // bytes; sums for more cells are made in turns
 
 void light_passes_destroy(LightPasses *passes)
 {
@@ -41,7 +41,7 @@ void light_passes_destroy(LightPasses *passes)
     *passes = (LightPasses){0};
 }
 
-// --- What C knows.
+// --- Uploads.
 
 static Result upload(LightPasses *passes, GpuBuffer *buffer, const char *what, const void *data,
                      size_t size, Error *error)
@@ -63,7 +63,7 @@ static Result upload_classes(LightPasses *passes, Error *error)
     return upload(passes, &passes->tables, "classes of tangents", tables, sizeof tables, error);
 }
 
-// A table of all kinds, `bytes` each, uploaded if it is another one.
+// Uploads a table of all kinds of hair (`bytes` for each), if it has changed.
 static Result upload_kinds(LightPasses *passes, const GridScene *scene, FieldTable table,
                            size_t bytes, Error *error)
 {
@@ -94,7 +94,7 @@ static Result upload_tables(LightPasses *passes, const GridScene *scene, Error *
                         error);
 }
 
-// The mesh among the cells.
+// Uploads the mesh's walls between cells.
 static Result upload_walls(LightPasses *passes, const GridScene *scene, Error *error)
 {
     LightField *field = &passes->field;
@@ -127,7 +127,8 @@ static void set_eye(const LightField *field, const GridScene *scene, LightParams
                3 * sizeof(float));
 }
 
-// Cells of a slice with a cell around, of whichever axis has most.
+// The number of cells of a slice including a border of one cell, for the axis whose slices are
+// largest.
 static int count_plane(const LightLattice *lattice)
 {
     int most = 0;
@@ -163,7 +164,7 @@ static void set_params(const LightPasses *passes, const GridScene *scene)
     gpu_uniforms_set(BIND_LIGHT, &params, sizeof params);
 }
 
-// --- Where hair lies.
+// --- Cells with hair.
 
 Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                           Error *error)
@@ -201,7 +202,7 @@ static Result take_box(LightPasses *passes, float box[LIGHT_BOX_WORDS], Error *e
     return RESULT_OK;
 }
 
-// The counts of cells with hair, and of those beside them.
+// Counts the cells with hair and their neighbours. Waits for the result to allocate buffers.
 static Result count_slots(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                           Error *error)
 {
@@ -260,9 +261,10 @@ static Result make_room(LightPasses *passes, Error *error)
     return RESULT_OK;
 }
 
-// --- What is in the cells.
+// --- Contents of cells.
 
-// Adds up a quantity of all hair in the cells of a range of slots; `light` < 0: their areas.
+// Adds up a quantity of all hair in the cells of a range of slots: the light that arrives from a
+// light or, if `light` < 0, the areas.
 static Result add_items(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                         LightPass pass, int light, const int range[2], Error *error)
 {
@@ -335,7 +337,8 @@ static Result run_sweep(LightPasses *passes, int number, bool sky, Error *error)
     return RESULT_OK;
 }
 
-// Shaders find out themselves when an order more is not worth it: nobody waits for them.
+// Queues all orders of scattering. A shader sets a flag when a further order would not matter; the
+// remaining sweeps then return at once. So the CPU does not have to wait for a result.
 static Result sweep_orders(LightPasses *passes, const GridScene *scene, Error *error)
 {
     gpu_buffer_bind_storage(&passes->planes, BIND_LIGHT_PLANES_OUT);

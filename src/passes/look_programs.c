@@ -8,7 +8,7 @@
 
 enum { MOST_UNROLLED = 4 };
 
-// A light that is read at a number known when compiling costs a fifth of one in a loop.
+// Reading a light at a compile-time index costs a fifth of reading it in a loop.
 int look_unrolled(int light_count)
 {
     return light_count <= MOST_UNROLLED ? light_count : 0;
@@ -53,7 +53,7 @@ void look_programs_count(LookPrograms *programs, int light_count, int map_count)
     programs->map_count = map_count;
 }
 
-// The light at the batch's points, of all batches.
+// Finds the light at this batch's points among the lights of all batches.
 static const ParticleLight *light_of(const ParticleLight *lights, uint32_t count,
                                      const HairBatch *batch)
 {

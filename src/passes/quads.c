@@ -8,9 +8,9 @@
 
 #include <math.h>
 
-// --- Ribbons into lists.
+// --- Ribbons to lists of fragments.
 
-// Particles that are projected at a time, so that what is kept of them stays small.
+// Number of particles that are projected at a time, to keep the buffers small.
 enum { PART_PARTICLES = 1 << 19 };
 
 static void destroy_ribbons(QuadRibbons *hair)
@@ -25,7 +25,8 @@ static void destroy_ribbons(QuadRibbons *hair)
     *hair = (QuadRibbons){0};
 }
 
-// `nearest`: a ribbon hides all that is behind it, in every pixel of which it covers a share.
+// `nearest`: opaque ribbons, for images without blending: a ribbon hides everything behind it in
+// each pixel that it covers partly.
 static Result create_ribbons(QuadRibbons *hair, const GpuLimits *limits, bool nearest, Error *error)
 {
     const ShaderDefine defines[] = {{"NEAREST", nearest}, {NULL, 0}};
@@ -88,13 +89,13 @@ static void draw_ribbons(QuadRibbons *hair)
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, hair->indices.buffer);
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, hair->command.buffer);
     glDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, NULL);
-    // The next part overwrites what this one's vertices read.
+    // The next part overwrites buffers that the vertex shader of this part reads.
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-// Draws one batch into the current framebuffer and A-buffer, through the scissor, but for strands
-// that `cull` leaves out if it tries.
+// Draws one batch to the current framebuffer and A-buffer within the scissor. If `cull` is active,
+// culled strands are left out.
 static Result draw_batch(QuadRibbons *hair, const HairBatch *batch, const Look *look, Cull *cull,
                          const GpuLimits *limits, GpuTimer *timer, Error *error)
 {
@@ -158,7 +159,7 @@ Result quads_add_base(Quads *quads, Error *error)
     return abuffer_add_base(&quads->abuffer, error);
 }
 
-// The band's lists; they are being measured, but not resolved yet.
+// Fills the lists of a band and queues the measurement of their length. Does not resolve them.
 static Result draw_band(Quads *quads, Drawing *drawing, const RenderTarget *target, int row,
                         int rows, GpuTimer *timer, Error *error)
 {
@@ -194,9 +195,9 @@ static void resolve_band(const Quads *quads, const RenderTarget *target, bool ov
     gpu_timer_end(timer);
 }
 
-// Rows that fill the pool well if hair is as dense in them as in a band of `rows` with this use:
-// some room is left, since a band that does not fit is drawn again. Not many more than before,
-// lest one sparse band speaks for all the rest.
+// The number of rows that fill the pool well if hair is as dense in them as it was in a band of
+// `rows` with this use. It leaves 15 % of the pool free, because a band that does not fit must be
+// drawn again. It grows by at most half, so that one sparse band does not decide for all others.
 static int rows_that_fit(const Quads *quads, const ABufferUse *use, int rows)
 {
     double capacity = abuffer_shard_nodes(&quads->abuffer);
@@ -205,7 +206,8 @@ static int rows_that_fit(const Quads *quads, const ABufferUse *use, int rows)
     return (int)fmax(1, fmin(rows * share, most));
 }
 
-// After a band that did not fit: a larger pool or, where there can be none, fewer rows.
+// After a band that did not fit: grows the pool or, if that is impossible, reduces the number of
+// rows.
 static Result make_it_fit(Quads *quads, const ABufferUse *use, int *rows, Error *error)
 {
     bool grown;
@@ -263,7 +265,7 @@ static void count_left_out(Quads *quads, const Drawing *drawing, RendererCounts 
     quads->skips = counts->culled + counts->hidden > strands / CULL_SHARE;
 }
 
-// In bands, each of which is measured before it is resolved.
+// Draws in bands; each band is measured before it is resolved.
 static Result draw_measured(Quads *quads, Drawing *drawing, RenderTarget *target, bool over_mesh,
                             GpuTimer *timer, RendererCounts *counts, Error *error)
 {
@@ -274,7 +276,7 @@ static Result draw_measured(Quads *quads, Drawing *drawing, RenderTarget *target
     return result;
 }
 
-// In one band, which is taken to fit: quads_settle finds out.
+// Draws one band that is expected to fit. quads_settle checks that later.
 static Result draw_trusting(Quads *quads, Drawing *drawing, const RenderTarget *target,
                             bool over_mesh, GpuTimer *timer, Error *error)
 {

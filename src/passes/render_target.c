@@ -45,7 +45,7 @@ static Result check_frame(GLuint frame, const char *what, Error *error)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, frame);
     GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
-    // Out of memory, for one, is why a frame is not complete.
+    // Check for errors first: an incomplete framebuffer may be caused by lack of memory.
     TRY(gpu_check(what, error));
     if (status == GL_FRAMEBUFFER_COMPLETE) return RESULT_OK;
     return error_set(error, RESULT_FAILED, "%s: framebuffer status 0x%04x", what, status);
@@ -106,7 +106,7 @@ void render_target_destroy(RenderTarget *target)
     const GLuint textures[] = {target->image,       target->depth,   target->base,
                                target->lit,         target->surface, target->edge_depth,
                                target->middle_depth};
-    if (target->image) { // names of 0 are ignored, but without a context nothing may be called
+    if (target->image) { // without a context no GL function may be called
         glDeleteFramebuffers(6, frames);
         glDeleteTextures(7, textures);
     }
@@ -114,7 +114,7 @@ void render_target_destroy(RenderTarget *target)
     *target = (RenderTarget){0};
 }
 
-// --- The way back.
+// --- Reading back.
 
 static int64_t rgba_bytes(const RenderTarget *target)
 {
@@ -136,7 +136,7 @@ Result render_target_send(RenderTarget *target, const GpuBuffer *flag, bool agai
     return RESULT_OK;
 }
 
-// Leaves alpha out.
+// Copies RGB and leaves out alpha.
 static void copy_rgb(Image *image, const uint8_t *rgba)
 {
     size_t count = (size_t)image->width * (size_t)image->height,

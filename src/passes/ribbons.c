@@ -7,8 +7,8 @@
 #include "glsl/draw/draw.h"
 
 enum {
-    ALIGNED = 64,                      // slots at whose multiples every driver lets a range begin
-    RECORD_BYTES = 16 * RIBBON_TEXELS, // of a slot
+    ALIGNED = 64, // a bound range begins at a multiple of this, which all drivers allow
+    RECORD_BYTES = 16 * RIBBON_TEXELS, // bytes of a slot's record
     KEY_BYTES = 4,
 };
 
@@ -17,7 +17,8 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-// Makes room for so many bytes; the driver shows shaders parts of them.
+// Makes room for `size` bytes. The buffer may be larger than what shaders can see at once; they see
+// pieces of it.
 static Result make_room(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
                         GLenum texel_format, Error *error)
 {
@@ -34,7 +35,7 @@ static void clear(const GpuBuffer *buffer, int64_t size)
                          GL_UNSIGNED_INT, &zero);
 }
 
-// Maps the first `size` bytes to be read; NULL on failure.
+// Maps the first `size` bytes for reading. NULL on failure.
 static const void *map(const GpuBuffer *buffer, int64_t size)
 {
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
@@ -97,8 +98,8 @@ static void bind_range(const GpuBuffer *buffer, GLuint binding, int64_t begin, i
                       (GLsizeiptr)((end - begin) * (int64_t)size));
 }
 
-// Projects part.drawn_strands strands from part.first_strand on, whose ribbons a shader can see at
-// once.
+// Projects part.drawn_strands strands beginning with part.first_strand. Their ribbons must fit into
+// the range that a shader can see.
 static Result project_part(Ribbons *ribbons, const HairBatch *batch, const Look *look,
                            const MaterialParams *part, int64_t slots, Error *error)
 {
