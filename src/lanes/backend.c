@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// px, at most, between points of a strand that are kept: so far colours are interpolated.
+// The largest distance in px between kept points of a strand. Colours are interpolated over this
+// distance.
 static const float FAR = 1;
 
 static void forget_room(Lanes *lanes)
@@ -52,7 +53,7 @@ static Result create(void **state, const BackendOptions *set, Error *error)
     return result;
 }
 
-// The mesh is looked at in each frame.
+// Does nothing: the mesh is rasterised in each frame anyway.
 static Result set_mesh(void *state, const DrawnMesh *mesh, Error *error)
 {
     (void)state, (void)mesh, (void)error;
@@ -89,7 +90,7 @@ static LaneModel model_of(const Look *look)
     }
 }
 
-// A table of the section's own, where strands differ by their brightness alone.
+// If a section's strands differ only in brightness, makes a table for its colour (tint_table.h).
 static Result open_look(LaneBatch *batch, const DrawnHair *drawn, Error *error)
 {
     const MaterialParams *m = &drawn->material;

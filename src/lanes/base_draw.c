@@ -8,8 +8,8 @@
 #include <string.h>
 
 enum {
-    BAND = 8, // rows that a thread takes at once
-    WIDER = 2 // samples: the surface around the mesh's box
+    BAND = 8, // rows that a thread processes at a time
+    WIDER = 2 // samples that are added around the mesh's box
 };
 
 void lane_base_destroy(LaneBase *base)
@@ -29,7 +29,8 @@ static int clamp(int x, int most)
     return x < 0 ? 0 : x > most ? most : x;
 }
 
-// What of a box lies in the image, from a multiple of W on; empty beside it.
+// The part of a box that lies in the image, with its left edge at a multiple of W. Empty if the box
+// lies outside.
 static void find_part(const DrawParams *draw, const int box[4], int wider, int part[4])
 {
     int width = (int)draw->width, height = (int)draw->height;
@@ -41,7 +42,7 @@ static void find_part(const DrawParams *draw, const int box[4], int wider, int p
         if (part[k + 2] < part[k]) part[k + 2] = part[k];
 }
 
-// New memory in place of old, whose content goes.
+// Replaces an array by a new one without copying its content.
 static bool renew(void *memory, size_t bytes)
 {
     void **pointer = memory;
@@ -80,11 +81,12 @@ static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error
 
 // --- The mesh's surface.
 
-// The eye is where clip x, y and w are 0, so a point q off it has (a q, b q, c q) for them with the
-// rows a, b, c of the matrix. For w = 1 these are x, y and 1; Cramer's rule gives q.
+// The directions from the eye through pixels. At the eye, clip x, y and w are 0, so a point at the
+// offset q from the eye has the clip coordinates (a q, b q, c q) with the rows a, b, c of the
+// matrix. For w = 1 they are x, y and 1; Cramer's rule gives q.
 BaseView base_view(const DrawParams *draw)
 {
-    double row[3][3], cross[3][3], det = 0; // cross[k]: of the other two rows
+    double row[3][3], cross[3][3], det = 0; // cross[k]: cross product of the other two rows
     const int rows[3] = {0, 1, 3};
     BaseView view = {.draw = draw};
     for (int k = 0; k < 3; ++k)
@@ -103,7 +105,7 @@ BaseView base_view(const DrawParams *draw)
     return view;
 }
 
-// To px of the surface and depths 0 .. 1.
+// The matrix rows that map to px of the surface and to depths 0 .. 1.
 static void find_rows(const DrawParams *draw, const int low[2], float rows[4][4])
 {
     const float size[2] = {draw->width, draw->height};
@@ -118,7 +120,7 @@ static void find_rows(const DrawParams *draw, const int low[2], float rows[4][4]
     }
 }
 
-// --- All together.
+// --- Combining mesh, floor and background.
 
 typedef struct Finish {
     const LaneBase *base;
@@ -127,12 +129,13 @@ typedef struct Finish {
     int parts;
 } Finish;
 
-// 16 px: sums of all samples in front of the floor and behind it, premultiplied; depths.
+// Values of 16 px: premultiplied sums of all samples in front of the floor and behind it, and the
+// depth.
 typedef struct Pixels {
     float front[4][W], behind[4][W], depth[W];
 } Pixels;
 
-// The middles around px (x, y) of the surface.
+// The 3 x 3 px around (x, y): depths at pixel centres and their addresses.
 typedef struct Around {
     float depth[9];
     size_t at[9];
@@ -150,7 +153,7 @@ static Around look_around(const MeshSurface *surface, int x, int y)
     return around;
 }
 
-// A px at an edge, in lane k.
+// Resolves a pixel at an edge of the mesh, in lane k, from its four samples.
 static void add_edge(const Finish *finish, int x, int y, const float z[MESH_EDGES], float floor_z,
                      int k, Pixels *pixels)
 {
@@ -219,13 +222,13 @@ SIMD_INLINE void add_mesh(const Finish *finish, int x, int y, const float floor_
     }
 }
 
-// A half: finite and not negative.
+// Converts a finite, non-negative number to a half float.
 SIMD_INLINE uint16_t half_of(float x)
 {
     x = simd_min(simd_max(x, 0), 65504) * 0x1p-112f;
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
-    return (uint16_t)((bits + 0xfff + (bits >> 13 & 1)) >> 13); // to the nearest, or the even one
+    return (uint16_t)((bits + 0xfff + (bits >> 13 & 1)) >> 13); // rounds to nearest, ties to even
 }
 
 SIMD_INLINE void store(const LaneBase *base, int x, int y, const Pixels *pixels)

@@ -6,8 +6,8 @@
 #include "glsl/kernel/skin.h"
 
 enum {
-    BAND = 4,     // rows that a thread takes at once
-    MESH_TAPS = 4 // of its own map, whose texels are seen where light grazes it
+    BAND = 4,     // rows that a thread processes at a time
+    MESH_TAPS = 4 // of its own shadow map, whose texels would show under grazing light
 };
 
 typedef struct Lighting {
@@ -18,10 +18,10 @@ typedef struct Lighting {
     int parts;
 } Lighting;
 
-// What 16 px show, as far as it is mesh.
+// The surface points of 16 px. Values of pixels without mesh are not used.
 typedef struct Points {
-    float x[3][W], normal[3][W], to_eye[3][W]; // m; unit
-    float open[W];                             // share of the sky
+    float x[3][W], normal[3][W], to_eye[3][W]; // x: m; the others are unit vectors
+    float open[W];                             // visible share of the sky
 } Points;
 
 SIMD_INLINE float dot3(const float a[3][W], const float b[3][W], int k)
@@ -29,8 +29,8 @@ SIMD_INLINE float dot3(const float a[3][W], const float b[3][W], int k)
     return a[0][k] * b[0][k] + a[1][k] * b[1][k] + a[2][k] * b[2][k];
 }
 
-// Surfaces seen from behind are lit as from in front. Where there is no mesh, any point
-// does: memory that was never written holds numbers, too.
+// Surfaces that are seen from behind are lit like front faces. Pixels without mesh get arbitrary
+// finite points; their memory may be uninitialised, which is harmless.
 SIMD_INLINE void find_points(const Lighting *lighting, int x, int y, Points *points)
 {
     const LaneBase *base = lighting->base;
@@ -54,7 +54,7 @@ SIMD_INLINE void find_points(const Lighting *lighting, int x, int y, Points *poi
             points->x[c][k] = eye[c] + w[k] * way[c][k];
         }
     }
-    for (int c = 0; c < 3 && lighting->shadow; ++c) // so that it does not shadow itself
+    for (int c = 0; c < 3 && lighting->shadow; ++c) // avoids self-shadowing
         for (int k = 0; k < W; ++k)
             points->x[c][k] += lighting->shadow->params.mesh_lift * points->normal[c][k];
     for (int k = 0; k < W; ++k) {
@@ -64,7 +64,8 @@ SIMD_INLINE void find_points(const Lighting *lighting, int x, int y, Points *poi
     }
 }
 
-// The shares of a light's colour that points show of it as diffuse light and as a highlight.
+// The share of a light's colour that the points reflect diffusely, and the share in their
+// highlight.
 SIMD_INLINE void reflect(const Points *points, const float to_light[3][W], bool skin,
                          float diffuse[W], float highlight[W])
 {

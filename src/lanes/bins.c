@@ -10,7 +10,7 @@
 typedef struct Binning {
     Bins *bins;
     const Projection *projection;
-    uint64_t *pairs; // NULL: they are only counted
+    uint64_t *pairs; // NULL in the first pass, which only counts
 } Binning;
 
 Result bins_create(Bins *bins, int columns, int rows, Error *error)
@@ -43,8 +43,9 @@ static inline void put(const Binning *binning, uint32_t *places, int block, uint
     if (binning->pairs) binning->pairs[binning->bins->begins[block] + place] = pair;
 }
 
-// Of a ribbon whose box has several rows and columns of blocks, in each row those between the
-// outermost pixels that its strip reaches: about its middle line, which moves by `slope` px a row.
+// For a ribbon whose box has several rows and columns of blocks: lists it only in the blocks of
+// each row that its strip touches. The strip lies around the middle line, which moves by `slope` px
+// for each pixel row.
 static void put_in_strip(const Binning *binning, const RibbonItem *item, uint32_t *places,
                          uint64_t pair)
 {
@@ -84,7 +85,8 @@ static void bin_part(void *data, int part)
     }
 }
 
-// From counts to places: in each list the first part's ribbons come first.
+// Converts counts to places. In each list the ribbons of the first part come first, so the order
+// does not depend on threads.
 static void find_places(Bins *bins, int parts)
 {
     size_t blocks = bins_count(bins), at = 0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Ribbons come in batches: their points are unpacked side by side, the cells that each touches are
-// listed, and then each touch is a turn of one loop in which every pixel of a cell is a lane of a
-// vector. It takes two such loops: the first finds what of each ribbon is seen, and closes cells;
-// then the points of those that are seen are shaded, unless they are; the second adds colours.
-// Compilers make the vectors; what they may make of them is said at the end of this file.
+// Composites ribbons in batches. The points of a batch are unpacked to arrays, and the cells that
+// each ribbon touches are listed. Then one loop runs over these touches; each lane of a vector is a
+// pixel of the cell. There are two such loops: the first finds how much of each ribbon is visible,
+// and closes cells that are full. Then the end points of visible ribbons are shaded, unless they
+// have been before. The second loop adds colours. The compiler vectorises the loops; the end of
+// this file says for which processors.
 #include "lanes/composite.h"
 
 #include "glsl/kernel/ribbon.h"
@@ -14,30 +15,31 @@
 
 enum {
     BATCH = 128,    // ribbons at a time
-    TOUCHES = 2048, // of them that are listed before they are drawn
-    USUAL = 2,      // cells in a row that a ribbon touches, as a rule
+    TOUCHES = 2048, // touches that are listed before they are drawn
+    USUAL = 2,      // cells that a ribbon usually touches in a row
     WANTED = 2 * BATCH,
-    KNOWN = 1024, // slots of a table of points that are wanted
+    KNOWN = 1024, // slots of a hash table of wanted points
 };
 
 // Column and row of a cell's pixels.
 static const float LANE_X[CELL_PIXELS] = {0, 1, 0, 1, 0, 1, 0, 1},
                    LANE_Y[CELL_PIXELS] = {0, 0, 1, 1, 2, 2, 3, 3};
 
-// What is linear in the image: in the block's first pixel, by column and by row.
+// A function that is linear in the image: its value at the block's first pixel, and its change for
+// each column and row.
 typedef struct Linear {
     float at[BATCH], by_x[BATCH], by_y[BATCH];
 } Linear;
 
-// Some ribbons, a field after another.
+// A batch of ribbons, as a structure of arrays.
 typedef struct Batch {
-    float x[4][BATCH], y[4][BATCH], near_at[4][BATCH]; // the point before, both ends, that behind
+    float x[4][BATCH], y[4][BATCH], near_at[4][BATCH]; // previous point, both ends, next point
     float opacity[BATCH];
-    uint32_t point[2][BATCH];                 // the ends' numbers among all points
+    uint32_t point[2][BATCH];                 // indices of the ends among all points
     Linear across;                            // distance from the middle line
     Linear along;                             // share of the ribbon's length
-    Linear first_share, last_share;           // of a pixel, that the ends leave it
-    float half_width[BATCH], widening[BATCH]; // px: at the first end, and from there to the last
+    Linear first_share, last_share;           // share of a pixel that each end does not cut off
+    float half_width[BATCH], widening[BATCH]; // px: at the first end; change to the last end
     float inner[BATCH], outer[BATCH], factor[BATCH], curve[BATCH]; // see RibbonProfile
     float first[3][BATCH], change[3][BATCH];                       // colour
     float near[BATCH], near_change[BATCH];                         // 1/w
@@ -46,12 +48,12 @@ typedef struct Batch {
     uint8_t seen[BATCH];
 } Batch;
 
-// A ribbon of the batch in a cell.
+// A ribbon of the batch that touches a cell.
 typedef struct Touch {
     uint16_t ribbon, cell;
 } Touch;
 
-// What a touch shows of its ribbon, pixel by pixel.
+// The visible share of a ribbon in each pixel of a cell, and the place along the ribbon there.
 typedef struct __attribute__((aligned(32))) Laid {
     float alpha[CELL_PIXELS], along[CELL_PIXELS];
 } Laid;
@@ -60,10 +62,11 @@ struct CompositeScratch {
     Laid laid[TOUCHES + BLOCK_CELLS + USUAL];
     Touch touches[TOUCHES + BLOCK_CELLS + USUAL];
     Batch batch;
-    uint8_t open[BLOCK_CELLS + USUAL];       // something can be seen through the cell
-    uint8_t now[BLOCK_CELLS + USUAL];        // and of this batch
-    float farthest[BLOCK_CELLS];             // least 1/w of what hides all behind it
-    float skipped[BLOCK_CELLS][CELL_PIXELS]; // of ribbons, that are seen too little to be shaded
+    uint8_t open[BLOCK_CELLS + USUAL]; // cells that are not yet opaque
+    uint8_t now[BLOCK_CELLS + USUAL];  // open cells in which this batch may be visible
+    float farthest[BLOCK_CELLS];       // least 1/w of mesh and floor in the cell
+    // Sums of the shares of ribbons that are too faint to be shaded.
+    float skipped[BLOCK_CELLS][CELL_PIXELS];
     uint32_t wanted[WANTED], known[KNOWN];
 };
 
@@ -79,7 +82,7 @@ SIMD_INLINE float clamp_share(float x)
 
 // --- Ribbons.
 
-// How opaque a strand is.
+// A strand's opacity.
 static float opacity_of(const LaneHair *hair, uint32_t strand)
 {
     const MaterialParams *m = &hair->caster.material;
@@ -114,15 +117,16 @@ SIMD_INLINE void set_linear(Linear *l, int i, float at, float by_x, float by_y)
     l->at[i] = at, l->by_x[i] = by_x, l->by_y[i] = by_y;
 }
 
-// Of a place in the block, px; of the first pixel whose middle is not before it the ceiling is
-// taken by a half more.
+// The cell of a position in px within the block. The caller adds 0.5 px where it needs the first
+// pixel whose centre is not before the position (a ceiling).
 SIMD_INLINE int cell_of(float px, int size, int cell)
 {
     float last = (float)(size - 1), at = px > 0 ? px : 0;
     return (int)(at < last ? at : last) / cell;
 }
 
-// Of the ribbons before, at and behind each of the batch the unit direction, 0 where there is none.
+// Unit directions of the previous ribbon, the ribbon itself and the next ribbon; 0 if there is
+// none.
 typedef struct RibbonWays {
     float x[3][BATCH], y[3][BATCH];
 } RibbonWays;
@@ -139,8 +143,8 @@ SIMD_INLINE void find_directions(const Batch *restrict b, RibbonWays *restrict w
         }
 }
 
-// In row r of cells the strip's middle is at the column middle + r * slope, counted so that column
-// c has its pixels' middle at c, and it touches columns whose middles lie within `reach` of that.
+// In row r of cells the strip's middle line is at the column middle + r * slope (column c has its
+// pixels' centre at c). The strip touches the columns whose centres are within `reach` of it.
 SIMD_INLINE void find_strips(const Block *block, const RibbonWays *restrict ways, Batch *restrict b)
 {
     const float WIDE = 1.0f / CELL_WIDTH, left = (float)block->x, top = (float)block->y;
@@ -170,7 +174,7 @@ SIMD_INLINE void find_strips(const Block *block, const RibbonWays *restrict ways
 SIMD_INLINE void find_lines(const Block *block, bool solid, const RibbonWays *restrict ways,
                             Batch *restrict b)
 {
-    float x = (float)block->x + 0.5f, y = (float)block->y + 0.5f; // the first pixel's middle
+    float x = (float)block->x + 0.5f, y = (float)block->y + 0.5f; // the first pixel's centre
     for (int i = 0; i < BATCH; ++i) {
         float ax = x - b->x[1][i], ay = y - b->y[1][i], bx = x - b->x[2][i], by = y - b->y[2][i],
               way_x = ax - bx, way_y = ay - by, dx = ways->x[1][i], dy = ways->y[1][i],
@@ -204,8 +208,8 @@ SIMD_INLINE void unpack(const Block *block, bool solid, Batch *restrict b)
 
 // --- Cells.
 
-// Lists the ribbon's touches of cells that are open; returns how many are listed then. Adds without
-// branches, which would be foreseen badly, up to USUAL a row.
+// Lists the open cells that the ribbon touches. Returns the new number of touches. Up to USUAL
+// cells of a row are added without branches, because branches would be mispredicted.
 SIMD_INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *touches, int count)
 {
     float middle = b->middle[i], slope = b->slope[i], reach = b->reach[i];
@@ -216,7 +220,7 @@ SIMD_INLINE int list_touches(const Batch *b, int i, const uint8_t *open, Touch *
               high = simd_max(simd_min(at + reach, right), left - 1);
         int column = (int)low;
         column += (float)column < low;
-        column = column < b->left[i] ? b->left[i] : column; // of what is no number
+        column = column < b->left[i] ? b->left[i] : column; // if `low` is NaN
         int wide = (int)(high + 1) - column, cell = row * BLOCK_CELLS_ACROSS + column;
         for (int k = 0; k < USUAL; ++k) {
             touches[count] = (Touch){(uint16_t)i, (uint16_t)(cell + k)};
@@ -235,7 +239,7 @@ SIMD_INLINE float linear(const Linear *l, int i, float x, float y)
     return l->at[i] + x * l->by_x[i] + y * l->by_y[i];
 }
 
-// The share of a pixel that the ribbon covers, times its opacity and what its ends leave it.
+// The share of a pixel that the ribbon covers, reduced by its opacity and by its ends.
 SIMD_INLINE float coverage(const Batch *b, int i, float x, float y, float along)
 {
     float across = fabsf(linear(&b->across, i, x, y)),
@@ -247,9 +251,10 @@ SIMD_INLINE float coverage(const Batch *b, int i, float x, float y, float along)
     return b->factor[i] * covered * clamp_share(simd_min(first, last));
 }
 
-// Lays ribbon i under what is in the cell, but for its colour: what of it is seen goes to `laid`.
-// x, y: of the cell's first pixel in the block. Bit 0: more than `least` of it is seen in a pixel,
-// bit 1: more than `open` of what stands behind can still be.
+// Blends ribbon i behind the cell's content, without colours: `laid` gets its visible share in each
+// pixel. x, y: the cell's first pixel in the block. Bit 0 of the result: more than `least` of the
+// ribbon is visible in some pixel. Bit 1: in some pixel the transmittance is still more than
+// `open`.
 SIMD_INLINE int lay_under(const Batch *restrict b, int i, float x, float y, BlockForm form,
                           float least, float open, Cell *restrict cell,
                           const float *restrict hidden, Laid *restrict laid)
@@ -269,7 +274,7 @@ SIMD_INLINE int lay_under(const Batch *restrict b, int i, float x, float y, Bloc
     return seen | through << 1;
 }
 
-// The same where the nearest ribbon of each pixel is what is seen.
+// Like lay_under, but only the nearest ribbon of each pixel is visible.
 SIMD_INLINE int keep_nearest(const Batch *restrict b, int i, float x, float y, Cell *restrict cell,
                              float *restrict hidden, Laid *restrict laid)
 {
@@ -317,7 +322,7 @@ SIMD_INLINE void want(CompositeScratch *scratch, const Ribbons *ribbons, uint32_
     scratch->wanted[(*count)++] = point;
 }
 
-// Gives colours to the ribbons that are seen.
+// Shades the end points of visible ribbons that have no colours yet, and sets the ribbons' colours.
 SIMD_INLINE void shade(const Ribbons *ribbons, SimdLevel level, int size, CompositeScratch *scratch)
 {
     Batch *b = &scratch->batch;
@@ -343,7 +348,7 @@ SIMD_INLINE void shade(const Ribbons *ribbons, SimdLevel level, int size, Compos
     }
 }
 
-// The share of what stands behind that still counts.
+// Pixels with a transmittance below this limit count as opaque.
 static float through_limit(float least_seen)
 {
     return simd_max(2 * least_seen, RIBBON_LEAST_THROUGH);
@@ -380,7 +385,7 @@ SIMD_INLINE void draw(const Block *block, BlockForm form, const Ribbons *ribbons
 
 // --- A block.
 
-// The least 1/w of what hides all behind it in each cell.
+// The least 1/w of mesh and floor in each cell: ribbons with less are hidden in all of its pixels.
 SIMD_INLINE void find_farthest(const Block *block, float farthest[BLOCK_CELLS])
 {
     for (int c = 0; c < BLOCK_CELLS; ++c) {
@@ -390,7 +395,7 @@ SIMD_INLINE void find_farthest(const Block *block, float farthest[BLOCK_CELLS])
     }
 }
 
-// The cells in which something of this batch may be seen; whether there are any at all.
+// Marks the cells in which this batch may be visible. False if all cells are full.
 SIMD_INLINE bool look_through(BlockForm form, CompositeScratch *scratch)
 {
     const Batch *b = &scratch->batch;
@@ -406,8 +411,8 @@ SIMD_INLINE bool look_through(BlockForm form, CompositeScratch *scratch)
     return any;
 }
 
-// What was left out looks like what was not: behind a pixel that is all but full, and ribbons of
-// which too little was seen.
+// Scales colours up to make good for what was left out: ribbons behind almost opaque pixels, and
+// ribbons that were too faint to be shaded.
 SIMD_INLINE void fill_up(const Block *block, float least, CompositeScratch *scratch)
 {
     float open = through_limit(least);
@@ -431,11 +436,11 @@ SIMD_INLINE void composite(const Block *block, BlockForm form, SimdLevel level,
     memset(scratch->skipped, 0, sizeof scratch->skipped);
     if (form == BLOCK_OVER_MESH) find_farthest(block, scratch->farthest);
     for (size_t done = 0; done < count; done += BATCH) {
-        // To the second level: there are more than the first one can wait for.
+        // Prefetches the next batch to the second-level cache; the first level can track fewer
+        // requests.
         for (size_t i = done + BATCH; i < done + 2 * BATCH && i < count; ++i) {
             const ScreenPoint *p = &ribbons->points[(uint32_t)order[i]];
-            __builtin_prefetch((const char *)p - sizeof *p, 0,
-                               2); // those around it are needed, too
+            __builtin_prefetch((const char *)p - sizeof *p, 0, 2);
             __builtin_prefetch((const char *)(p + 3) - 1, 0, 2);
         }
         int size = count - done < BATCH ? (int)(count - done) : BATCH, listed = 0;
@@ -453,8 +458,8 @@ SIMD_INLINE void composite(const Block *block, BlockForm form, SimdLevel level,
         fill_up(block, ribbons->least_seen, scratch);
 }
 
-// --- The same for all kinds of processors. None fuses multiplications and additions
-// (-ffp-contract=off), so that all give the same bits.
+// --- Versions for each kind of processor. None fuses multiplications and additions
+// (-ffp-contract=off), so all give the same bits.
 
 typedef void Composite(const Block *block, const Ribbons *ribbons, const uint64_t *order,
                        size_t count, CompositeScratch *scratch);

@@ -10,7 +10,8 @@ static float least(float a, float b)
     return a < b ? a : b;
 }
 
-// Of the square that begins at x, y; 0 where it is not all within the base.
+// The least inverse depth of the base in the square at x, y, which is its farthest point; 0 if the
+// square is not entirely within the base.
 static float farthest(const BlockBase *base, const float depth[2], int x, int y)
 {
     float far = 0;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What hair in each cell of a light grid takes from each direction, and what the lights leave in
-// it.
+// The optical depth of each cell of a light grid in each direction, and the light that the lamps
+// send into it.
 #include "lanes/light_grid_state.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// Items of each part and cell begin where those before end; cells with hair get slots, then those
-// beside them, where points between cells look, too.
+// Turns counts of items into the index where the items of each part and cell begin. Gives slots to
+// cells with hair, then to their neighbours, which interpolation between cells reads.
 void light_grid_make_slots(LightGridState *state)
 {
     const int *n = state->field.lattice.count;
@@ -40,9 +40,9 @@ void light_grid_make_slots(LightGridState *state)
     }
 }
 
-// What a cell's items come to.
+// The sums over a cell's items.
 typedef struct CellSum {
-    uint64_t class[GRID_CLASSES][1 + MAX_LIGHTS]; // area, and what each light meets of it
+    uint64_t class[GRID_CLASSES][1 + MAX_LIGHTS]; // [0]: area; [1 + l]: area lit by light l
     uint64_t whole, tint[3];
     uint16_t used[GRID_CLASSES];
     int count;
@@ -78,7 +78,7 @@ static void clear_sum(CellSum *sum)
     memset(sum->tint, 0, sizeof sum->tint);
 }
 
-// Classes in their order, whatever thread met them first.
+// Sorts the classes, because the order in which threads met them is not fixed.
 static void sort_classes(CellSum *sum)
 {
     for (int u = 1; u < sum->count; ++u) {
@@ -89,7 +89,7 @@ static void sort_classes(CellSum *sum)
     }
 }
 
-// The main tangent by power iteration on the sum of t t^T, on the side of most tips.
+// The main tangent, by power iteration on the sum of t t^T, with the sign of the mean tangent.
 static int find_main_class(const CellSum *sum)
 {
     float tensor[3][3] = {{0}}, mean[3] = {0}, kind_area[LIGHT_GRID_KINDS] = {0},
@@ -124,10 +124,10 @@ typedef struct CellFill {
     LightGridState *state;
     const GridScene *scene;
     CellSum *sums;               // [parts]
-    LightPath paths[MAX_LIGHTS]; // of lights afar, where there is a mesh
+    LightPath paths[MAX_LIGHTS]; // for directional lights, if there is a mesh
 } CellFill;
 
-// The mesh's shadow on cell f from light l.
+// The share of light l that the mesh lets through to cell f.
 static float find_passed(const CellFill *fill, int f, int l)
 {
     const LightGridState *state = fill->state;
@@ -149,7 +149,8 @@ static float find_passed(const CellFill *fill, int f, int l)
     return light_blocks_march(scene->blocks, lattice, cell, way, reach);
 }
 
-// k h, then first(d) / k = S without scattering, of one cell.
+// k h in each direction: the extinction k times the side h. fill_source then computes the source S
+// without scattering, first(d) / k.
 SIMD_INLINE void fill_depths(const CellSum *sum, float depth[ORDINATES])
 {
     for (int d = 0; d < ORDINATES; ++d) depth[d] = 0;
@@ -188,8 +189,9 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
         memcpy(grid_source(state, g, f), source + g * GROUP_WIDE, GROUP_WIDE * sizeof *source);
 }
 
-// A matt surface in a light of 1 that it is square to shows its colour; those in a cell lie any way
-// towards the light, half as bright in the mean.
+// The light that the mesh reflects in this cell. A matt surface perpendicular to light of 1 shows
+// its colour. Surfaces in a cell have all orientations towards the light, so they are half as
+// bright on average.
 static void fill_glow(const LightGridState *state, const GridScene *scene, const CellSum *sum,
                       const float passed[MAX_LIGHTS], int f)
 {
@@ -207,7 +209,8 @@ static void fill_glow(const LightGridState *state, const GridScene *scene, const
     }
 }
 
-// Along a direction a cell is as long as its side over the direction's main component.
+// Transmittance and mean share of a passage. Along a direction the way through a cell is as long as
+// its side over the direction's main component.
 SIMD_INLINE void fill_passage(LightGridState *state, int f)
 {
     const float *depth = state->depth + (size_t)f * ORDINATES;
@@ -231,7 +234,8 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
     int first = (int)((int64_t)state->filled * part / state->parts),
         end = (int)((int64_t)state->filled * (part + 1) / state->parts);
     for (int f = first; f < end; ++f) {
-        // Where the last part's items ended, and before where the cell's began.
+        // Placing items has moved first_item to the end of each cell's items, so the last part's
+        // entry is the end of this cell, and the previous cell's entry is its beginning.
         size_t c = (size_t)state->cell_of[f];
         uint32_t stop = state->first_item[(size_t)(state->parts - 1) * cells + c],
                  start = c ? state->first_item[(size_t)(state->parts - 1) * cells + c - 1] : 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The orders of scattering that are not swept, and the light of all of them.
+// Estimates the orders of scattering that are not swept, and adds up the light of all orders.
 #include "lanes/light_grid_state.h"
 
 #include <math.h>
 
-// What hair met of the order before the last and of the last.
+// The light that hair met in the last order but one, and in the last.
 static void find_met(const LightGridState *state, int channel, float met[2])
 {
     for (int k = 0; k < 2; ++k) {

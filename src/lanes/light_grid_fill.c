@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where hair lies among the cells of a light grid, step by step, and the memory for it.
+// Finds the cells of a light grid that contain hair, step by step, and allocates memory for them.
 #include "lanes/light_grid_state.h"
 
 #include <stdlib.h>
@@ -53,8 +53,9 @@ static bool grow_slots(LightGridState *state)
     return good;
 }
 
-// Items are read no more when cells are filled. Few are kept for the next image, since fresh memory
-// costs more than it saves there; 1,000,000 strands of 16 vertices have 300 MB.
+// Frees the items, which are not needed any more once cells are filled: 300 MB for 1,000,000
+// strands of 16 vertices. Small arrays are kept for the next image, because allocating them again
+// takes longer than it is worth.
 static void release_items(LightGridState *state)
 {
     if (state->item_room * sizeof *state->items <= KEPT_ITEM_BYTES) return;
@@ -63,7 +64,7 @@ static void release_items(LightGridState *state)
     state->item_room = 0;
 }
 
-// --- The whole.
+// --- All steps.
 
 static Result fill_all(LightGridState *state, const GridScene *scene, Error *error)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What is found for one way to the eye, before light_grid_show.h: which cells lie so deep in hair
-// that they can hardly be seen and get their mean light; and room for what cells show.
+// Work for one position of the eye before light_grid_show.h reads the light: finds cells that lie
+// so deep in hair that they are hardly visible and get their mean light, and makes room for the
+// light that cells show.
 #include "lanes/light_grid_show.h"
 
 #include <math.h>
@@ -9,11 +10,11 @@
 
 typedef struct Gather {
     LightGridState *state;
-    int ordinate;  // the nearest to the way to the eye
-    float opacity; // of hair to the eye over that to light: the least of all hair
+    int ordinate;  // the ordinate nearest to the direction of the eye
+    float opacity; // least ratio, over all hair, of opacity to the eye and opacity to light
 } Gather;
 
-// --- Cells that are hidden.
+// --- Hidden cells.
 
 static bool is_hidden(const Gather *gather, const int cell[3])
 {
@@ -110,7 +111,7 @@ const float (*light_grid_find_patch(const LightGridState *state, int kind, int s
     return (const float(*)[4])find.seen;
 }
 
-// Room for as many patches as the last image took, and more.
+// Empties the cache of patches, and makes room for more patches than the last image used.
 static bool forget_patches(LightGridState *state, int kinds)
 {
     if (!state->patches) state->patches = calloc(1, sizeof *state->patches);
@@ -128,7 +129,7 @@ static bool forget_patches(LightGridState *state, int kinds)
         free(patches->seen);
         patches->room = most + most / 4;
         patches->seen = malloc((size_t)patches->room * sizeof *patches->seen);
-        if (!patches->seen) patches->room = 0; // they are found each time
+        if (!patches->seen) patches->room = 0; // patches are then computed at each use
     }
     atomic_store(&patches->count, 0);
     if (patches->of) memset((void *)patches->of, 0, count * sizeof *patches->of);

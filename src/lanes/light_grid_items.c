@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Parts of segments of hair, sorted by the cells of a light grid that they lie in: so each cell is
-// worked on by one thread, and adds them up in whole numbers, so that their order does not matter.
+// Cuts segments of hair into parts and sorts these by the cell of a light grid that they lie in.
+// Then one thread processes each cell and adds its parts up as integers, so the result does not
+// depend on their order.
 #include "lanes/light_grid_tile.h"
 #include "lanes/shadow.h"
 
@@ -10,23 +11,23 @@
 typedef struct Place {
     LightGridState *state;
     const GridScene *scene;
-    bool emit; // items, not only how many there are
+    bool emit; // false: only count items
 } Place;
 
-// Of one segment of each strand of a tile.
+// One segment of each strand of a tile.
 typedef struct Segments {
-    float a[3][W], b[3][W]; // its ends, along the lattice's axes, m
-    float area[W];          // 2 r length times opacity over h^2, in steps
+    float a[3][W], b[3][W]; // ends in the lattice's axes, m
+    float area[W];          // 2 r length opacity / h^2, in steps
     uint32_t class[W];
     bool sound[W];
 } Segments;
 
-// What is left of lights at the segments' ends.
+// The share of each light that reaches the segments' ends.
 typedef struct Lefts {
     float at[2][MAX_LIGHTS][W]; // [end][map]
 } Lefts;
 
-// One piece of each segment: its area, and what each light leaves of it, in steps.
+// One part of each segment: its area, and the area that each light reaches, in steps.
 typedef struct Pieces {
     float area[W];
     uint32_t lit[MAX_LIGHTS][W];
@@ -68,7 +69,8 @@ static void find_classes(const GridHair *hair, int strands, Segments *s)
     }
 }
 
-// Cell of a place between the ends; -1 beside the lattice, which only broken positions are.
+// The cell of a point between the ends; -1 outside the lattice, which only happens for broken
+// positions.
 SIMD_INLINE int find_cell(const LightLattice *lattice, const Segments *s, float on, int i)
 {
     int at[3];
@@ -81,8 +83,8 @@ SIMD_INLINE int find_cell(const LightLattice *lattice, const Segments *s, float 
     return (at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0];
 }
 
-// What hair leaves of each map's light at particle j of strands, found there where curves are. What
-// the mesh leaves of it find_passed finds (light_grid_cells.c).
+// The share of each map's light that hair lets through to particle j, found on the curves if
+// strands are curves. The mesh's share is found by find_passed (light_grid_cells.c).
 SIMD_INLINE void find_left(const LaneShadow *shadow, const GridStrands *strands, int j,
                            float left[MAX_LIGHTS][W])
 {
@@ -116,7 +118,8 @@ SIMD_INLINE void find_left(const LaneShadow *shadow, const GridStrands *strands,
     }
 }
 
-// By signed conversions, which all vectors have: what is large is even.
+// Rounds to an integer through signed conversion, which all vector instruction sets have. Large
+// values are rounded to even integers.
 SIMD_INLINE uint32_t steps_of(float x)
 {
     float steps = simd_min(simd_max(x, 0) + 0.5f, 4e9f);
@@ -136,7 +139,7 @@ static float find_lamp(const GridScene *scene, const LightLattice *lattice, int 
     return fminf(light_field_light(scene->draw, l, x, way), 1e3f);
 }
 
-// Of a painted particle the area times the albedo over the kind's.
+// For a painted particle: the area times its albedo over the kind's mean albedo.
 static void put_tint(const GridHair *hair, size_t particle, float area, uint32_t tint[3])
 {
     const MaterialParams *m = &hair->caster.material;
@@ -151,7 +154,7 @@ static void put_tint(const GridHair *hair, size_t particle, float area, uint32_t
     }
 }
 
-// What each light leaves of one piece's areas, in steps.
+// The area of a part that each light reaches, in steps.
 SIMD_INLINE void find_lit(const Place *all, const Segments *s, const Lefts *left, int j, float on,
                           Pieces *pieces)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The box of hair, in which the cells of a light grid lie.
+// Finds the box of hair, which the cells of a light grid fill.
 #include "lanes/light_grid_tile.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@ typedef struct FindBox {
     float (*box)[BOX]; // [parts]
 } FindBox;
 
-// Of what is within reach only: other positions are broken, and none of them a number here, which
-// no comparison takes.
+// Widens the box by points within reach. Other positions are broken; they are replaced by NaN,
+// which min and max ignore.
 SIMD_INLINE void widen(float box[BOX][W], float own[3][W], const float before[3][W], bool first)
 {
     float square[W];

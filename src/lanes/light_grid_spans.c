@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Which cells a sweep has to visit. Of each row those from the first to the last that hair or its
-// neighbours lie in, or that lie on the way from such cells to others: before all hair light is
-// what comes from around, and what lies behind all of it nobody asks for.
+// Finds the cells that a sweep has to visit. In each row they reach from the first to the last cell
+// that contains hair or is next to it, or that lies on the way from such a cell to another. In
+// front of all hair the light is the environment's, and light behind all hair is not needed.
 #include "lanes/light_grid_state.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// A group's axes and rows.
+// The axes of a group of directions, and its rows of cells.
 typedef struct Rows {
     int slices, tall, wide;
-    ptrdiff_t stride[3]; // of slots: along slices, rows and columns
+    ptrdiff_t stride[3]; // of slots: from slice to slice, row to row, column to column
     GridSpan *spans;
 } Rows;
 
@@ -26,7 +26,7 @@ static Rows find_rows(const LightGridState *state, int group)
                   .spans = grid_spans(state, group, 0)};
 }
 
-// The cells of a row that have slots.
+// The first and the last cell of a row that have slots.
 static void find_own(const LightGridState *state, const Rows *rows, int slice, int y, int own[2])
 {
     const int *slot = state->slot + slice * rows->stride[0] + y * rows->stride[1];
@@ -38,7 +38,8 @@ static void find_own(const LightGridState *state, const Rows *rows, int slice, i
     }
 }
 
-// What the rows around row y of a slice have, and a cell more to each side.
+// Extends `cells` by the spans of the rows around row y of a slice, widened by one cell on each
+// side.
 static void join_around(const Rows *rows, int slice, int y, bool needed, int cells[2])
 {
     if (slice < 0 || slice >= rows->slices) return;
@@ -67,7 +68,7 @@ static void find_group(const LightGridState *state, int group)
         for (int y = 0; y < rows.tall; ++y) {
             GridSpan *span = &rows.spans[slice * rows.tall + y];
             join_around(&rows, slice + step, y, true, span->needed);
-            for (int k = 0; k < 2; ++k) // what is swept and not needed
+            for (int k = 0; k < 2; ++k) // do not sweep cells that are not needed
                 span->swept[k] =
                     k ? span->swept[k] < span->needed[k] ? span->swept[k] : span->needed[k]
                     : span->swept[k] > span->needed[k] ? span->swept[k]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Light goes through the cells of a light grid: slice by slice along the main axis of its
-// direction, from between the cells of the slice before (bilinear), on each thread the directions
-// of some groups.
+// Propagates light through the cells of a light grid, slice by slice along the main axis of its
+// direction. Light that enters a cell is interpolated bilinearly between the cells of the slice
+// before. Each thread processes the directions of some groups.
 #include "lanes/light_grid_state.h"
 
 #include "glsl/kernel/lamp.h"
@@ -18,17 +18,18 @@ typedef struct Sweep {
     int parts;
 } Sweep;
 
-// What a group's directions have in common.
+// Properties that the directions of a group share.
 typedef struct GroupWay {
     int main, across[2]; // axes
     bool forward;
-    float taps[2][TAPS][GRID_LANES]; // weights of the cells before, by the axes across
+    float taps[2][TAPS][GRID_LANES]; // weights of three cells before, for both axes across
     float sky[GROUP_WIDE];
     ptrdiff_t stride[3], step[3]; // of slots and of walls, along `main` and the axes across
-    const float *walls[3];        // shares that pass the mesh along those axes; NULL: there is none
+    const float *walls[3];        // transmittance of the mesh along these axes; NULL without a mesh
 } GroupWay;
 
-// From above (+y of the world) comes the sky, from below the ground, evenly between them.
+// The ambient light of the directions of a group: sky from above (+y of the world), ground from
+// below, interpolated between.
 static void find_sky(const DrawParams *draw, const LightLattice *lattice, int group,
                      float sky[GROUP_WIDE])
 {
@@ -81,12 +82,12 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
     find_strides(sweep->state, way);
 }
 
-// Added to all radiance: what thick hair leaves of it would else become so small that processors
-// need a hundred cycles for each operation with it (denormal numbers).
+// Added to all radiance. Without it the light behind thick hair would become so small (denormal
+// numbers) that each operation takes a hundred cycles.
 #define LEAST_LIGHT 1e-30f
 
-// The weighted sum of three neighbours; the mesh lets the share `low` of the first one through,
-// `high` of the last.
+// The weighted sum of three neighbours. The mesh lets the share `low` of the first and `high` of
+// the last through.
 SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high, const float *a,
                        const float *b, const float *c, float *out)
 {
@@ -98,7 +99,7 @@ SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high
                                   last * *(const GridLanes *)(c + k) + LEAST_LIGHT;
 }
 
-// Of a row of the slice before, blended along the first axis across.
+// Blends a row of the slice before along the first axis across.
 SIMD_INLINE void blend_row(const GroupWay *way, bool walls, const int cells[2], const float *wall,
                            const float *before, float *row)
 {
@@ -111,7 +112,8 @@ SIMD_INLINE void blend_row(const GroupWay *way, bool walls, const int cells[2], 
     }
 }
 
-// out = S + (in - S) exp(-tau), in the mean S + (in - S)(1 - exp(-tau)) / tau.
+// Light through a cell with the optical depth tau and the source S: out = S + (in - S) exp(-tau);
+// mean = S + (in - S)(1 - exp(-tau)) / tau.
 SIMD_INLINE void pass_cell(const Sweep *sweep, int group, int slot, float *io, float *mean)
 {
     const LightGridState *state = sweep->state;
@@ -143,7 +145,7 @@ SIMD_INLINE void keep(const Sweep *sweep, int group, int slot, const float *mean
     }
 }
 
-// Adds what the cell's hair meets.
+// Adds the light that the cell's hair meets.
 SIMD_INLINE void add_met(const LightGridState *state, int group, int slot, const float *mean,
                          GridLanes met[3])
 {
@@ -151,7 +153,7 @@ SIMD_INLINE void add_met(const LightGridState *state, int group, int slot, const
     for (int c = 0; c < 3; ++c) met[c] += *(const GridLanes *)(mean + c * GRID_LANES) * depth;
 }
 
-// What comes from the side of the mesh is what that sends back.
+// Replaces the light that the mesh blocks by the light that the mesh reflects.
 SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, float *io)
 {
     for (int c = 0; c < 3; ++c) {
@@ -161,7 +163,7 @@ SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, 
     }
 }
 
-// A cell on the way of the group: what comes in becomes what goes out.
+// Processes a cell on the way of the group: `io` is the incoming light, then the outgoing light.
 SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, GridLanes met[3])
 {
     if (slot < 0) return;
@@ -175,7 +177,7 @@ SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, 
     add_met(sweep->state, group, slot, mean, met);
 }
 
-// Row y of the cells of a slice: from three rows of the slice before, to `out`.
+// Sweeps row y of a slice from three blended rows of the slice before, to `out`.
 SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, bool walls,
                            int slice, int y, const int cells[2], const float *const rows[3],
                            float *out, double sum[3])
@@ -200,14 +202,14 @@ SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, b
         for (int l = 0; l < GRID_LANES; ++l) sum[c] += (double)met[c][l];
 }
 
-// The planes of a sweep: of the slice before and of this one, each with a cell around, and three
-// rows.
+// The light of the slice before and of this slice, each with a border of one cell, and three
+// blended rows.
 typedef struct Planes {
     const float *before;
     float *after, *rows;
 } Planes;
 
-// What lies before all hair is never written: there stands what comes from around, as at the start.
+// Sweeps a slice. Cells in front of all hair are never written; they keep the environment's light.
 SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, bool walls,
                              int slice, const Planes *planes, double sum[3])
 {
@@ -216,7 +218,8 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
     size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
     const GridSpan *spans = grid_spans(sweep->state, group, slice);
     ptrdiff_t wall = (way->forward ? slice - 1 : slice + 1) * way->step[0] - way->step[2];
-    // Row y of the slice before lies at y % 3, for the three rows of cells around it.
+    // Row y of the slice before is stored at y % 3: three rows around a row of cells are needed at
+    // a time.
     for (int y = 0; y < tall + 2; ++y) {
         int blended[2] = {wide, 0};
         for (int around = y < 2 ? 0 : y - 2; around <= y && around < tall; ++around)
@@ -280,7 +283,7 @@ void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, b
 
 // --- Scattering.
 
-// Of one channel of cell f.
+// Scatters the light of one channel in cell f.
 SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows)[ORDINATES], int f,
                                  int channel, float tint)
 {
@@ -297,7 +300,7 @@ SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows
             grid_source(state, g, f)[channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
 }
 
-// Of the last order the mesh sends back its colour's share, alike to all sides.
+// The mesh reflects the light of the last order, times its colour, equally in all directions.
 SIMD_INLINE void reflect(const LightGridState *state, int f)
 {
     for (int c = 0; c < 3; ++c) {

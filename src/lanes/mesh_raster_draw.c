@@ -8,11 +8,12 @@
 #include <string.h>
 
 enum {
-    GUARD = 1 << 14, // px: farther off triangles are cut
-    PLANES = 6       // of the box that is drawn
+    GUARD = 1 << 14, // px: triangles are clipped at this distance
+    PLANES = 6       // planes of the clip volume
 };
 
-// From the mesh's frame: rows of (u w, v w, depth w, w), and what turns normals.
+// The transform of vertices from the mesh's frame to (u w, v w, depth w, w), and the rotation of
+// normals.
 typedef struct Matrix {
     float rows[4][4], turn[3][3];
 } Matrix;
@@ -103,7 +104,7 @@ static Matrix place_mesh(const PlacedMesh *mesh, const float rows[4][4])
     return matrix;
 }
 
-// How far a place (u w, v w, depth w, w) is inside of each plane.
+// The signed distance of a point (u w, v w, depth w, w) to a clip plane, positive inside.
 SIMD_INLINE float distance_inside(const float h[4], int plane)
 {
     switch (plane) {
@@ -122,7 +123,7 @@ SIMD_INLINE float distance_inside(const float h[4], int plane)
     }
 }
 
-// Of broken positions, which are not even beyond a plane, too.
+// The clip planes that a vertex lies beyond, as bits. A broken position (NaN) is beyond all planes.
 SIMD_INLINE int beyond(const float h[4])
 {
     int on = 0;
@@ -148,7 +149,7 @@ SIMD_INLINE void turn_normal(const Fill *fill, size_t v, float n[3])
     }
 }
 
-// Rounded to the nearest step.
+// Rounds to the nearest step of the subpixel grid.
 SIMD_INLINE int step_of(float px)
 {
     return (int)floorf(px * STEPS + 0.5f);
@@ -176,17 +177,17 @@ SIMD_INLINE void place_vertices(const Fill *fill, int part)
 }
 SIMD_STAGE(place_vertices, Fill)
 
-// --- Triangles that are cut.
+// --- Clipped triangles.
 
 enum { MOST_CORNERS = 3 + PLANES };
 
-// A vertex before it is on the screen.
+// A vertex before the perspective division.
 typedef struct Vertex {
     float h[4], normal[3];
 } Vertex;
 
-// Where the way from a vertex inside to one outside meets the plane: the same for both triangles
-// that the way is an edge of.
+// The intersection of an edge with a plane. It is always computed from the inside vertex to the
+// outside one, so both triangles at the edge get the same point.
 static Vertex meet(const Vertex *inside, const Vertex *outside, int plane)
 {
     Vertex vertex;
@@ -198,7 +199,7 @@ static Vertex meet(const Vertex *inside, const Vertex *outside, int plane)
     return vertex;
 }
 
-// What of a polygon is inside of a plane (Sutherland and Hodgman 1974); returns its corners.
+// Clips a polygon by a plane (Sutherland and Hodgman 1974). Returns the number of corners.
 static int cut(Vertex *polygon, int count, int plane)
 {
     Vertex all[MOST_CORNERS];
@@ -224,7 +225,7 @@ static Corner project(const Vertex *vertex)
     return corner;
 }
 
-// The corners that are left of triangle t, at most MOST_CORNERS.
+// Clips triangle t. Returns the number of corners, at most MOST_CORNERS.
 static int cut_triangle(const Fill *fill, uint32_t t, int planes, Corner *corners)
 {
     Vertex polygon[MOST_CORNERS] = {0};

@@ -12,7 +12,7 @@
 
 enum { CHANNELS = 4 };
 
-// A row of cells, row by row of its pixels.
+// A row of cells, stored as rows of pixels.
 typedef struct Strip {
     float light[CHANNELS][CELL_HEIGHT][BLOCK_WIDTH];
 } Strip;
@@ -22,7 +22,7 @@ static int least_int(int a, int b)
     return a < b ? a : b;
 }
 
-// A half that is finite and not negative.
+// Converts a half float that is finite and not negative.
 SIMD_INLINE float float_of_half(uint16_t half)
 {
     return simd_float_of((uint32_t)(half & 0x7fff) << 13) * 0x1p112f;
@@ -34,7 +34,7 @@ bool pixels_have_base(const BlockBase *base, int x, int y)
            y < base->y + base->height && y + BLOCK_HEIGHT > base->y;
 }
 
-// The sample's place in the base; -1 outside.
+// The index of a sample in the base; -1 outside.
 SIMD_INLINE int base_at(const BlockBase *base, int x, int y)
 {
     x -= base->x, y -= base->y;
@@ -61,7 +61,7 @@ void pixels_clear(const Block *block, const BlockBase *base, const PixelStyle *s
     if (base) hide(block, base, style);
 }
 
-// --- What is seen: the ribbons over what stands behind them.
+// --- Visible light: ribbons over the base.
 
 static void fill_behind(const Block *block, const BlockBase *base, const PixelStyle *style,
                         int column, int row, float behind[CHANNELS][CELL_PIXELS])
@@ -87,7 +87,8 @@ SIMD_INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNE
     }
 }
 
-// What --aov depth shows at the inverse distance `near`, 0: of nothing. See display.glsl.
+// The value that --aov depth shows for the inverse distance `near`; 0 if nothing is there. See
+// display.glsl.
 static float depth_shown(const PixelStyle *style, float near)
 {
     float distance = 1 / simd_max(near, 1e-20f), from = style->depth_range[0],
@@ -96,7 +97,7 @@ static float depth_shown(const PixelStyle *style, float near)
     return near > 0 ? share : 0;
 }
 
-// `hidden`: inverse distances of the nearest ribbon, else of the mesh, else 0.
+// `hidden`: the inverse distance of the nearest ribbon, otherwise of the mesh, otherwise 0.
 static void show_depth(const float *hidden, const PixelStyle *style,
                        float light[CHANNELS][CELL_PIXELS])
 {
@@ -123,7 +124,7 @@ static void fill_strip(const Block *block, const BlockBase *base, const PixelSty
     }
 }
 
-// Pixels are the means of side x side samples.
+// Replaces squares of side x side samples by their mean.
 SIMD_INLINE void average_squares(Strip *strip, int side)
 {
     for (int c = 0; c < CHANNELS; ++c)
@@ -142,14 +143,14 @@ static void average(Strip *strip, int side)
     if (side == 4) average_squares(strip, 4);
 }
 
-// --- Colours, as display.glsl has them.
+// --- Colours, as in display.glsl.
 
 SIMD_INLINE float tone_mapped(int tone, float c)
 {
     return tone == TONE_REINHARD ? tone_reinhard(c) : tone == TONE_FILMIC ? tone_filmic(c) : c;
 }
 
-// Straight alpha, and colours of that tone.
+// Converts a row to straight alpha and to colours of this tone.
 SIMD_INLINE void display_as(Strip *restrict strip, int y, int kind)
 {
     for (int x = 0; x < BLOCK_WIDTH; ++x) {
@@ -232,7 +233,7 @@ void pixels_store(const Block *block, const BlockBase *base, const PixelStyle *s
     size_t pixel = (size_t)image->channels * image_channel_size(image->kind),
            pitch = (size_t)image->width * pixel;
     uint8_t *to = image->pixels + (size_t)top * pitch + (size_t)left * pixel;
-    const uint8_t *clear = NULL; // a row without hair
+    const uint8_t *clear = NULL; // a finished row without hair, which others copy
     Strip strip;
     bool is_clear = false;
     for (int y = 0; y < height; ++y, to += pitch) {

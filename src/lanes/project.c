@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A tile of strands at a time, one a lane, until it is known which points are kept; then strand by
-// strand, whose kept points are packed side by side so that loops over them become vectors, too.
+// Processes a tile of strands at a time, a strand for each lane, until it is known which points are
+// kept. Then it processes each strand alone; kept points are packed, so that loops over them are
+// vectorised, too.
 #include "lanes/project.h"
 
 #include "lanes/shadow_tile.h"
@@ -9,19 +10,19 @@
 
 #include <stdlib.h>
 
-enum { BESIDE = W }; // room behind a strand's last point, so that loops need not end with it
+enum { BESIDE = W }; // spare room behind a strand's last point, so loops may run past it
 
 // A point of each strand of a tile.
 typedef struct Row {
     float x[W], y[W], inverse_w[W], half_width[W];
 } Row;
 
-// The kept points of a strand, and what becomes of the ribbons that begin there.
+// The kept points of a strand, and properties of the ribbons that begin there.
 typedef struct Kept {
     float *x, *y, *inverse_w, *half_width;
-    float *way_x, *way_y;               // unit direction of the ribbon; [-1]: of none, 0
-    float *left, *top, *right, *bottom; // px whose middles it may touch
-    uint32_t *number;                   // of the points on the strand
+    float *way_x, *way_y;               // unit direction of the ribbon; [-1] is 0
+    float *left, *top, *right, *bottom; // px whose centres it may touch
+    uint32_t *number;                   // index of the point on the strand
     uint8_t *seen;
 } Kept;
 
@@ -31,10 +32,10 @@ typedef struct Project {
     const DrawParams *draw;
     const Hidden *hidden;
     float far;
-    size_t most; // points of a strand
+    size_t most; // largest number of points of a strand
 } Project;
 
-// --- Memory of a thread.
+// --- Scratch memory of a thread.
 
 enum { KEPT_ARRAYS = 10 };
 
@@ -91,8 +92,8 @@ SIMD_INLINE void find_clip(const DrawParams *draw, const float x[3][W], float cl
     }
 }
 
-// Where strands are drawn instead, when `x` lies before the near plane: on that plane, towards the
-// neighbour that is in sight.
+// Moves points in front of the near plane (`x`, clip coordinates) to that plane, towards the
+// neighbour that is behind it.
 SIMD_INLINE void move_to_near(float near, float x[3][W], const float before[3][W],
                               const float after[3][W])
 {
@@ -121,7 +122,7 @@ SIMD_INLINE void find_rows(const Project *project, const Tile *tile, int points,
     const DrawParams *draw = project->draw;
     float own[3][W], radius[W], clip[3][3][W];
     find_clip(draw, find_points(tile, 0, own), clip[0]);
-    memcpy(clip[2], clip[0], sizeof *clip); // before the first point stands itself
+    memcpy(clip[2], clip[0], sizeof *clip); // the first point is its own predecessor
     for (int k = 0; k < points; ++k) {
         float(*here)[W] = clip[k % 3], (*after)[W] = clip[(k + 1) % 3],
         (*before)[W] = clip[(k + 2) % 3], moved[3][W], least = 1e30f;
@@ -145,8 +146,8 @@ SIMD_INLINE RibbonPoint point_of(const Row *row, int i)
     return p;
 }
 
-// Which points are kept, a bit a strand: the first and the last, and those before the ribbon would
-// be too bent or too long.
+// Decides which points are kept, one bit for each strand: the first and the last, and each point
+// after which the ribbon would bend too much or become too long.
 SIMD_INLINE void keep_points(const Row *rows, int points, float far, uint16_t *masks)
 {
     Row kept = rows[0];
@@ -214,7 +215,7 @@ SIMD_INLINE void widen(const Kept *kept, int count, const DrawParams *draw)
             kept->x[j] - draw->axis[0], kept->y[j] - draw->axis[1], draw->focal);
 }
 
-// The pixels whose middles are in reach of the ribbon from point j on.
+// The box of pixels whose centres the ribbon from point j can reach.
 SIMD_INLINE void find_boxes(const Kept *kept, int count, const DrawParams *draw)
 {
     const float *x = kept->way_x, *y = kept->way_y;
@@ -242,7 +243,8 @@ static void store_points(const Kept *kept, int count, ScreenPoint *points)
     for (int j = 0; j < count; ++j)
         points[j] = (ScreenPoint){kept->x[j], kept->y[j], kept->inverse_w[j],
                                   pack_level(kept->half_width[j]) | kept->number[j] << 16};
-    points[count - 1].inverse_w = -points[count - 1].inverse_w; // its sign, of 0 as well
+    // The sign bit marks the last point, also for 0.
+    points[count - 1].inverse_w = -points[count - 1].inverse_w;
 }
 
 static bool make_room(Projection *to, int part, size_t count)
@@ -256,7 +258,7 @@ static bool make_room(Projection *to, int part, size_t count)
     return true;
 }
 
-// Lists the ribbons that may be seen; those behind what hides them are only counted.
+// Lists the ribbons that may be visible. Strands that the base hides are only counted.
 static void list_ribbons(const Project *project, const Kept *kept, int count, size_t slot, int part)
 {
     Projection *to = project->to;
@@ -331,7 +333,7 @@ SIMD_INLINE void project_hairs(const Project *project, int part)
 
 SIMD_STAGE(project_hairs, Project)
 
-// --- All of it.
+// --- All strands.
 
 static Result make_scratch(Projection *projection, size_t points, size_t most, Error *error)
 {

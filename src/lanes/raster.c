@@ -6,11 +6,11 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-// What threads share.
+// Data that the threads share.
 typedef struct Work {
     const LaneRaster *raster;
     const RasterScene *scene;
-    atomic_int next; // block that nobody has begun
+    atomic_int next; // the next block that no thread has begun
 } Work;
 
 Result raster_create(LaneRaster *raster, int width, int height, Error *error)
@@ -40,7 +40,7 @@ void raster_destroy(LaneRaster *raster)
     *raster = (LaneRaster){0};
 }
 
-// Room for each thread to sort the longest list.
+// Makes room for each thread to sort the longest list.
 static Result make_room(LaneRaster *raster, Error *error)
 {
     size_t longest = raster->bins.longest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 16 points at a time, one a lane, of one batch.
+// Shades 16 points at a time, one for each lane, all of one batch.
 #include "lanes/shade.h"
 
 #include "lanes/lamp.h"
@@ -36,16 +36,16 @@ void shades_destroy(Shades *shades)
     *shades = (Shades){0};
 }
 
-// --- Where 16 points are.
+// --- The places of 16 points.
 
 typedef struct Spots {
     const LaneHair *hair;
-    int count;                    // those behind are like the last one
-    uint32_t strand[W], point[W]; // of the batch; of the strand
+    int count;                    // lanes behind it repeat the last point
+    uint32_t strand[W], point[W]; // index of the strand in the batch, of the point on the strand
     float x[3][W], tangent[3][W], to_eye[3][W];
-    float radius[W], opacity[W]; // m; to light
-    float color[3][W];           // the strand's, there
-    uint32_t hash[W];            // of the strand's brightness
+    float radius[W], opacity[W]; // m; opacity for light
+    float color[3][W];           // the strand's colour at the point
+    uint32_t hash[W];            // decides the strand's brightness
 } Spots;
 
 SIMD_INLINE void find_spots(const LaneHair *hair, const uint32_t *points, int count, Spots *s)
@@ -68,7 +68,7 @@ SIMD_INLINE void find_spots(const LaneHair *hair, const uint32_t *points, int co
         }
 }
 
-// To unit length; what has none points along y.
+// Normalises the vectors. A vector without length becomes the y axis.
 SIMD_INLINE void make_unit(float v[3][W])
 {
     for (int i = 0; i < W; ++i) {
@@ -80,7 +80,7 @@ SIMD_INLINE void make_unit(float v[3][W])
     }
 }
 
-// Thickness, opacity and colour: paint.glsl.
+// Finds thickness, opacity and colour, as paint.glsl does.
 SIMD_INLINE void find_strands(const LaneLight *light, Spots *s)
 {
     const LaneHair *hair = s->hair;
@@ -124,7 +124,8 @@ SIMD_INLINE void find_strands(const LaneLight *light, Spots *s)
 
 // --- Light.
 
-// A light as 16 points have it: unit vectors towards it, and the share of its colour that comes.
+// The light from one lamp at 16 points: unit vectors towards the lamp, and the share of its colour
+// that arrives.
 typedef struct Coming {
     float way[3][W], share[W];
 } Coming;
@@ -134,10 +135,10 @@ SIMD_INLINE float dot3(float a[3][W], float b[3][W], int i)
     return a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i];
 }
 
-// Sine and cosine of the inclinations, and what lobes make of the eye's.
+// Sine and cosine of the eye's inclination, and the same tilted for each lobe.
 typedef struct Eye {
     float sine[W], cosine[W];
-    float tilted_sine[3][W], tilted_cosine[3][W]; // of theta_r tilted for R, TT, TRT
+    float tilted_sine[3][W], tilted_cosine[3][W]; // theta_r tilted for R, TT, TRT
 } Eye;
 
 SIMD_INLINE void find_eye(const MaterialParams *m, Spots *s, Eye *eye)
@@ -156,7 +157,7 @@ SIMD_INLINE void find_eye(const MaterialParams *m, Spots *s, Eye *eye)
         }
 }
 
-// The mean light from everywhere on the side of a fibre that is seen.
+// The mean ambient light on the visible side of a fibre.
 SIMD_INLINE void find_around(const DrawParams *draw, Spots *s, const Eye *eye, float color[3][W])
 {
     for (int i = 0; i < W; ++i) {
@@ -171,7 +172,7 @@ SIMD_INLINE void find_around(const DrawParams *draw, Spots *s, const Eye *eye, f
     }
 }
 
-// What is left of each light at the points, [light][lane].
+// The share of each light that reaches the points, [light][lane].
 SIMD_INLINE void find_left(const LaneLight *light, const Spots *s, float left[MAX_LIGHTS][W])
 {
     const LaneShadow *shadow = light->shadow;
@@ -184,22 +185,22 @@ SIMD_INLINE void find_left(const LaneLight *light, const Spots *s, float left[MA
     }
 }
 
-// --- Marschner's fibre.
+// --- Marschner's model.
 
-// Of the beams along the fibre and the table's nodes what the fibre sends, by a section's own
-// table.
+// The geometry of a light and the eye at 16 points: the longitudinal factors, and the place in the
+// azimuthal table.
 typedef struct Beams {
-    float along[3][W];    // M of R, TT, TRT
-    float azimuth[W];     // 0 .. 1
+    float along[3][W];    // longitudinal factor M of R, TT, TRT
+    float azimuth[W];     // 0 .. 1 for 0 .. pi
     float inclination[W]; // cosine of theta_d
 } Beams;
 
 enum { AZIMUTHS = SCATTER_AZIMUTHS, NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS };
 
-// Nodes around the places, and their shares.
+// The four table nodes around each place, and their weights.
 typedef struct Nodes {
     int first[W];
-    float share[4][W]; // of first, the next azimuth, and both of the next inclination
+    float share[4][W]; // first, next azimuth, and the same two at the next inclination
 } Nodes;
 
 SIMD_INLINE void find_nodes(const Beams *beams, Nodes *nodes)
@@ -217,7 +218,7 @@ SIMD_INLINE void find_nodes(const Beams *beams, Nodes *nodes)
     }
 }
 
-// Of a strand the slice of the section's table, and its colour over the slice's.
+// The slice of the section's table for each strand, and the strand's colour over the slice's.
 typedef struct Tints {
     int slice[W];
     float through[3][W];
@@ -239,15 +240,16 @@ SIMD_INLINE void find_tints(const MaterialParams *m, const TintTable *table, con
 }
 
 typedef float Four __attribute__((vector_size(16)));
-typedef int32_t FourWords __attribute__((vector_size(16))); // 0 .. 2^31: whole numbers with a sign
-                                                            // become floats in one instruction
+// 0 .. 2^31: signed integers convert to floats in one instruction
+typedef int32_t FourWords __attribute__((vector_size(16)));
 
-// Words of a texel: R | TT of red << 16, TT of green and blue, TRT of red and green, TRT of blue.
+// Interpolates the section's table (tint_table.h). Words of a texel: R | TT of red << 16, TT of
+// green | TT of blue << 16, TRT of red | TRT of green << 16, TRT of blue.
 SIMD_INLINE void sum_tints(const TintTable *table, const Tints *tints, const Nodes *nodes,
                            const Beams *beams, float sent[3][W])
 {
     static const int NEXT[4] = {0, 1, AZIMUTHS, AZIMUTHS + 1};
-    Four low[W], high[W]; // by lane: a texel's words are read at once
+    Four low[W], high[W]; // per lane: the words of a texel are read at once
     for (int i = 0; i < W; ++i) {
         const uint32_t *texel = table->texels[tints->slice[i] + nodes->first[i]];
         low[i] = high[i] = (Four){0};
@@ -268,7 +270,7 @@ SIMD_INLINE void sum_tints(const TintTable *table, const Tints *tints, const Nod
     }
 }
 
-// By the table of all colours.
+// Interpolates the table for all colours.
 SIMD_INLINE void sum_colors(const float (*table)[4], const Spots *s, const Nodes *nodes,
                             const Beams *beams, float sent[3][W])
 {
@@ -302,7 +304,7 @@ SIMD_INLINE void find_beams(const MaterialParams *m, LaneModel model, Spots *s, 
                                     ? fibre_cos_d(sin_i, cos_i, eye->sine[i], eye->cosine[i])
                                     : eye->cosine[i];
     }
-    for (int i = 0; i < W && model == LANE_GAUSS; ++i) // theta_i + theta_r, by acos
+    for (int i = 0; i < W && model == LANE_GAUSS; ++i) // theta_i + theta_r, from arc cosines
         angle[i] = (float)PI * (1 - fibre_turn(sine[i]) - fibre_turn(eye->sine[i]));
     for (int p = 0; p < 3; ++p) {
         float sharp = m->lobe_sharpness[p], scale = m->lobe_scale[p],
@@ -356,7 +358,7 @@ SIMD_INLINE void shade_marschner(const Shader *shader, LaneModel model, Spots *s
     }
 }
 
-// --- Kajiya and Kay's.
+// --- Kajiya and Kay's model.
 
 SIMD_INLINE void shade_kajiya(const Shader *shader, Spots *s, float color[3][W])
 {
@@ -397,7 +399,7 @@ static void show_strands(const Spots *s, float color[3][W])
 {
     for (int i = 0; i < W; ++i) {
         uint32_t bits = hash_bits(s->hair->ids[s->strand[i]]) & 0xffffff;
-        bits = bits ? bits : 1; // black is no strand
+        bits = bits ? bits : 1; // black means that there is no strand
         for (int c = 0; c < 3; ++c) color[c][i] = (float)(bits >> (8 * c) & 255) / 255;
     }
 }
@@ -441,7 +443,7 @@ SIMD_INLINE void shade_group(const Shader *shader, const LaneHair *hair, const u
                               memory_order_relaxed);
 }
 
-// Groups of points of one batch.
+// Splits the points by batch and shades them in groups.
 SIMD_INLINE void shade_points(const Shader *shader, const uint32_t *points, int count)
 {
     for (uint32_t h = 0; h < shader->hairs->count && count > 0; ++h) {

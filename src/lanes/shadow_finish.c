@@ -12,7 +12,7 @@ static size_t texels_of(const ShadowMap *shadow)
     return (size_t)shadow->coarse * (size_t)shadow->coarse;
 }
 
-// --- Where layers begin.
+// --- The depth at which layers begin.
 
 typedef struct Spread {
     ShadowMap *shadow;
@@ -20,7 +20,7 @@ typedef struct Spread {
     float *depths;
 } Spread;
 
-// The least of all threads' first depths, in those of the first.
+// The minimum over all threads' first depths, stored in the first thread's array.
 static float *merge_firsts(ShadowMap *shadow, int map)
 {
     size_t texels = texels_of(shadow), step = texels * (size_t)shadow->at_once;
@@ -37,8 +37,8 @@ static int within(int i, int count)
     return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
-// Of coarse row y, which may be one beside the map, the least of three columns of three rows:
-// coarse + 2 of them, from the one before the first.
+// The minimum of 3 x 3 coarse texels along row y, which may be one outside the map. `least` has
+// coarse + 2 values and begins one texel before the first.
 SIMD_INLINE void find_least(const float *first, int coarse, int y, float *line, float *least)
 {
     const float *a = first + within(y - 1, coarse) * coarse,
@@ -51,7 +51,8 @@ SIMD_INLINE void find_least(const float *first, int coarse, int y, float *line, 
         least[x] = simd_min(line[x], simd_min(line[x + 1], line[x + 2]));
 }
 
-// Linear between coarse rows, the upper of which is `above`: C rows from 4 * y - 2 on.
+// Interpolates linearly between two coarse rows, `above` and `below`: writes C rows from C * y - C
+// / 2 on.
 SIMD_INLINE void spread_rows(const Spread *spread, int y, const float *above, const float *below,
                              float *edge)
 {
@@ -61,7 +62,7 @@ SIMD_INLINE void spread_rows(const Spread *spread, int y, const float *above, co
         if (row < 0 || row >= side) continue;
         float share = ((float)j + 0.5f) / C, *out = spread->depths + (size_t)row * (size_t)side;
         for (int i = 0; i < coarse + 2; ++i) edge[i] = above[i] + share * (below[i] - above[i]);
-        for (int x = 0; x < C / 2; ++x) { // both ends
+        for (int x = 0; x < C / 2; ++x) { // the texels at both ends of the row
             float along = ((float)x + 0.5f) / C;
             out[x] = edge[0] + (along + 0.5f) * (edge[1] - edge[0]);
             out[side - C / 2 + x] = edge[coarse] + along * (edge[coarse + 1] - edge[coarse]);
@@ -72,7 +73,7 @@ SIMD_INLINE void spread_rows(const Spread *spread, int y, const float *above, co
     }
 }
 
-// Each part has its rows of coarse texels and the texels before them.
+// Each part processes some of the coarse rows with the rows of texels above them.
 SIMD_INLINE void spread_part(const Spread *spread, int part)
 {
     const ShadowMap *shadow = spread->shadow;
@@ -113,8 +114,8 @@ typedef struct Finish {
     uint32_t *layers; // [side][tiles][LAYERS][T]
 } Finish;
 
-// A row's sums of all threads, smoothed with their neighbours (1 2 1); beyond the edges stand the
-// outermost again.
+// Adds up all threads' sums of a row and smooths them along the row (1 2 1). Outside the map the
+// outermost texels are repeated.
 SIMD_INLINE void gather_row(const ShadowMap *shadow, int map, int row, float *line, float *smooth)
 {
     int side = shadow->side;
@@ -135,7 +136,7 @@ SIMD_INLINE void gather_row(const ShadowMap *shadow, int map, int row, float *li
     }
 }
 
-// Smooths the other way and adds up, layer by layer: three rows of all layers to one.
+// Smooths across three rows, and sums up the layers from the first to the last.
 SIMD_INLINE void finish_row(const Finish *maps, int row, float *const rows[3])
 {
     size_t side = (size_t)maps->shadow->side, tiles = (size_t)maps->shadow->tiles;

@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const size_t MOST_BYTES = (size_t)256 << 20; // of sums
+static const size_t MOST_BYTES = (size_t)256 << 20; // of all threads' sums
 
-// As many threads as there are, but for the memory of their maps.
+// The number of threads that draw: all, unless their maps would need too much memory.
 static size_t count_parts(size_t map_bytes)
 {
     size_t parts = (size_t)parallel_threads(), most = MOST_BYTES / map_bytes;
@@ -82,7 +82,7 @@ size_t shadow_map_layer_words(const ShadowMap *shadow)
     return (size_t)shadow->side * (size_t)shadow->tiles * LAYERS * SHADOW_MAP_TILE;
 }
 
-// --- Boxes.
+// --- Bounding boxes.
 
 typedef struct Boxes {
     int parts, count;
@@ -91,7 +91,7 @@ typedef struct Boxes {
     float (*box)[MAX_LIGHTS][6]; // [parts]
 } Boxes;
 
-// Of what is within reach only: other positions are broken.
+// Widens the box by points within reach. Other positions are broken.
 SIMD_INLINE void widen_box(const CastParams *params, const Tile *tile, const float x[3][W],
                            float box[6][W])
 {
@@ -101,7 +101,7 @@ SIMD_INLINE void widen_box(const CastParams *params, const Tile *tile, const flo
     for (int k = 0; k < W; ++k) {
         bool sound = (k < tile->strands) & (fabsf(x[0][k]) < limit) & (fabsf(x[1][k]) < limit) &
                      (fabsf(x[2][k]) < limit) & (fabsf(p.u[k]) < reach) & (fabsf(p.v[k]) < reach);
-        place[0][k] = sound ? p.u[k] : NAN; // which no comparison takes
+        place[0][k] = sound ? p.u[k] : NAN; // min and max ignore NaN
         place[1][k] = sound ? p.v[k] : NAN;
         place[2][k] = sound ? p.z[k] : NAN;
     }
@@ -163,7 +163,7 @@ void shadow_map_find_boxes(const ShadowMap *shadow, const CastParams *params, in
 
 // --- Whole maps.
 
-// The map of first depths, whose texels are `coarse` of the map's wide.
+// The parameters of a map of first depths, whose texels are `coarse` texels of the map wide.
 static CastParams coarse_params(const CastParams *params, int coarse)
 {
     CastParams wide = *params;
@@ -173,7 +173,7 @@ static CastParams coarse_params(const CastParams *params, int coarse)
     return wide;
 }
 
-// As many maps as there are sums for.
+// Draws the maps that fit into memory at a time.
 static void draw_some(ShadowMap *shadow, const CastParams *params, int maps, MappedCasters casters,
                       float *depths, uint32_t *layers)
 {

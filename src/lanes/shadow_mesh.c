@@ -11,17 +11,18 @@ enum { SIDE = SHADOW_MESH_SIDE, SQUARE = SHADOW_MESH_SQUARE, REACH = SHADOW_MESH
 typedef struct Bounding {
     const float *depths;
     float (*bounds)[2];
-    int side, rows, parts; // texels across a map, squares down all maps
+    int side, rows, parts; // side: texels of a map; rows: rows of squares of all maps
 } Bounding;
 
-// A point in the square looks at a texel and at the next REACH each way, never beyond its map.
+// The bounds of all depths that a point in the square may sample: its texels and REACH more on each
+// side, within the map.
 SIMD_INLINE void bound_square(const float *first, int side, int wide, int high, float bounds[2])
 {
     float least[SQUARE], most[SQUARE], low = first[0], top = first[0];
     for (int k = 0; k < SQUARE; ++k) least[k] = most[k] = first[k];
     for (int y = 0; y < high; ++y) {
         const float *row = first + (ptrdiff_t)y * side;
-        for (int end = 0; end < 2; ++end) { // the first texels of a row, and the last ones
+        for (int end = 0; end < 2; ++end) { // the first SQUARE texels of a row, and the last
             const float *at = end ? row + wide - SQUARE : row;
             for (int k = 0; k < SQUARE; ++k) {
                 least[k] = simd_min(at[k], least[k]);

@@ -10,7 +10,7 @@
 
 enum { W = STRAND_TILE };
 
-// One of every so many strands.
+// The size of the groups of strands of which one strand is drawn.
 static uint32_t find_step(MappedCasters casters, int least)
 {
     uint64_t strands = 0;
@@ -19,7 +19,7 @@ static uint32_t find_step(MappedCasters casters, int least)
     return step > 1 ? (uint32_t)step : 1;
 }
 
-// Of a group of `step` strands the one that is taken: any, but always the same.
+// The strand that represents a group of `step` strands: a pseudo-random but fixed choice.
 static uint32_t choose(uint32_t group, uint32_t step)
 {
     return hash_bits(group) % step;
@@ -28,7 +28,7 @@ static uint32_t choose(uint32_t group, uint32_t step)
 typedef struct Take {
     const MappedCaster *from;
     float (*position)[4];
-    uint32_t (*paint)[4]; // NULL: there is none
+    uint32_t (*paint)[4]; // NULL without paint
     uint32_t step, tiles;
     int parts;
 } Take;
@@ -44,7 +44,7 @@ static void take_tiles(void *data, int part)
         size_t from[W], to = t * vertices * W;
         for (uint32_t k = 0; k < W; ++k) {
             uint32_t group = t * W + k, strand = group * take->step + choose(group, take->step);
-            if (strand >= drawn) strand = drawn - 1; // a copy, or of a group that is not full
+            if (strand >= drawn) strand = drawn - 1; // lanes and groups past the last strand
             from[k] = (strand / W) * vertices * W + strand % W;
         }
         for (size_t j = 0; j < vertices * W; j += W)
@@ -94,7 +94,8 @@ static Result make_room(ShadowSample *sample, MappedCasters casters, uint32_t st
     return grow(&sample->paint, &sample->paint_room, painted, error);
 }
 
-// The last strand's share of its width goes to its group.
+// Sets the weight of the drawn strands. The smaller share of the last strand is spread over all
+// groups.
 static void set_caster(MappedCaster *caster, const Take *take)
 {
     MaterialParams *material = &caster->material;

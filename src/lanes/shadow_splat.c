@@ -8,16 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float MOST = 7500; // points of a wide segment, as in shadow_splat.comp
+static const float MOST = 7500; // most points of a wide segment, as in shadow_splat.comp
 
-// A row of segments as points: `count` of them from (u, v, z) on.
+// Segments of a tile's strands as rows of points: `count` points beginning at (u, v, z).
 typedef struct Points {
     float u[W], v[W], z[W], step_u[W], step_v[W], step_z[W];
     float along[W], width[W];
     uint32_t part[W]; // see caster_part
-    int count[W];     // of thin ribbons
-    int most;         // the largest
-    bool wide;        // a ribbon has points beside each other, too
+    int count[W];     // of thin ribbons; 0 for wide ones
+    int most;         // the largest count
+    bool wide;        // some ribbon is wide and needs several points across
 } Points;
 
 static float dense_wide(const ShadowSplat *splat)
@@ -25,8 +25,8 @@ static float dense_wide(const ShadowSplat *splat)
     return splat->depths ? CASTER_DEEP_WIDE : CASTER_FIRST_WIDE;
 }
 
-// How a ribbon is laid down: points along it, and for wide ones beside each other. Thin ones are
-// not resolved: fibre_depth is their opacity.
+// How a ribbon is covered with points: in a row along it and, if it is wide, also across. Thin
+// ribbons are not resolved; fibre_depth gives their opacity.
 SIMD_INLINE void lay_points(const ShadowSplat *splat, int map, const Tile *tile, float weight,
                             const Places *a, const Places *b, Points *points)
 {
@@ -62,7 +62,8 @@ SIMD_INLINE void lay_points(const ShadowSplat *splat, int map, const Tile *tile,
     points->wide = widest > CASTER_WIDE;
 }
 
-// Where a turn's point of strand k lies: at the edge with nothing to add if beside the map.
+// Where point `turn` of strand k lies. Outside the map it is clamped to the edge and `inside` is
+// false.
 typedef struct Spot {
     float z;
     int row, column;
@@ -81,8 +82,8 @@ SIMD_INLINE Spot find_spot(const Points *points, int k, int turn, float edge)
                   .inside = (u == x) & (v == y) & (turn < points->count[k])};
 }
 
-// Points on their way into the sums: laid down many at a time, since additions to places that are
-// known do not wait for each other's.
+// A queue of points to add. Their places are computed beforehand, so that the additions do not wait
+// for each other.
 enum { QUEUE = 2048 };
 typedef struct Queue {
     int count;
@@ -90,14 +91,14 @@ typedef struct Queue {
     uint32_t part[QUEUE];
 } Queue;
 
-// What one thread draws with.
+// The data of one drawing thread.
 typedef struct Brush {
     const ShadowSplat *splat;
-    uint32_t *sums; // of the first map
+    uint32_t *sums; // sums of the first map
     float *first;
-    size_t map_words, map_texels; // of a map's sums and first depths
+    size_t map_words, map_texels; // words of a map's sums, texels of its first depths
     Queue queue;
-    Places ends[MAX_LIGHTS][2]; // of the points laid last, of each map, in turns
+    Places ends[MAX_LIGHTS][2]; // [map][turn]: the last two points of each strand
     int turn;
 } Brush;
 
@@ -146,7 +147,7 @@ SIMD_INLINE void keep_firsts(const Brush *brush, int map, const Points *points)
     }
 }
 
-// A wide ribbon, as wide as its segment is at the middle.
+// Draws a wide ribbon with the width of its segment at the middle.
 static void lay_wide(const Brush *brush, int map, const Points *p, int k, float opacity,
                      float weight)
 {
@@ -180,7 +181,7 @@ static void lay_wide(const Brush *brush, int map, const Points *p, int k, float 
 
 // --- Strands.
 
-// The next point of each of a tile's strands, its number j, into all maps.
+// Draws the segments that end at point j of each of a tile's strands to all maps.
 SIMD_INLINE void lay_next(Brush *brush, const Tile *tile, float weight, int j, const float x[3][W],
                           bool deep)
 {

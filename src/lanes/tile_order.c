@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Cells of the box of hair along each axis, and all of them.
+// The number of cells of the hair's box along each axis, and of all cells.
 enum { BITS = 4, SIDE = 1 << BITS, CELLS = 1 << (3 * BITS), W = STRAND_TILE };
 
 static size_t count_tiles(const MappedCaster *caster)
@@ -24,7 +24,7 @@ static bool make_room(TileOrder *order, size_t count)
     return order->room > 0;
 }
 
-// Where a tile lies: the middle of its first strand.
+// The place of a tile: the middle of its first strand.
 static const float *find_place(const MappedCaster *caster, size_t tile)
 {
     size_t vertices = caster->material.vertex_count;
@@ -36,14 +36,14 @@ static void find_box(const MappedCaster *caster, size_t tiles, float low[3], flo
     for (int k = 0; k < 3; ++k) low[k] = 1e6f, high[k] = -1e6f;
     for (size_t t = 0; t < tiles; ++t) {
         const float *x = find_place(caster, t);
-        for (int k = 0; k < 3; ++k) { // which what is no number does not change
+        for (int k = 0; k < 3; ++k) { // NaN leaves them unchanged
             low[k] = x[k] < low[k] ? x[k] : low[k];
             high[k] = x[k] > high[k] ? x[k] : high[k];
         }
     }
 }
 
-// The cell of a place by its axes' bits in turns.
+// The key of a place: the bits of its cell's coordinates, interleaved (Morton order).
 static uint32_t find_key(const float x[3], const float low[3], const float scale[3])
 {
     uint32_t key = 0;

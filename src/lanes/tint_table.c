@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TINT_SLICES = 4 }; // of brightness, see tint_table.h
+enum { TINT_SLICES = 4 }; // levels of brightness, see tint_table.h
 
 enum { NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS, WORDS = 4, BEAMS = 3 };
 
-// Where a colour lies among the table's.
+// The two colours of the table around a colour, and the share of the second.
 typedef struct Between {
     const float (*low)[BEAMS + 1], (*high)[BEAMS + 1];
     float share;
@@ -66,7 +66,7 @@ static void fill_part(void *data, int part)
         fill_slice(filling->tints, slice);
 }
 
-// Of each beam the most that any fibre sends is 65535 units.
+// The unit of each beam, so that the largest value of any fibre is 65535 units.
 static void find_units(TintTable *tints)
 {
     float most[BEAMS] = {1e-9f, 1e-9f, 1e-9f};
