@@ -15,13 +15,13 @@ static struct {
     pthread_mutex_t lock;
     pthread_cond_t ended;
     pthread_t thread;
-    FILE *stream; // NULL: nothing is shown
+    FILE *stream; // NULL if nothing is shown
     bool ends;
-    char what[WHAT_SIZE]; // empty: nothing that takes long
-    char line[LINE_SIZE]; // in front of it
-    double begun_ms;      // of `what`
+    char what[WHAT_SIZE]; // empty if nothing is going on that takes long
+    char line[LINE_SIZE]; // the line that precedes the activity
+    double begun_ms;      // start of `what`
     double drawn_ms;
-    int shown; // characters on the line
+    int shown; // characters that are now on the line
 } activity = {.lock = PTHREAD_MUTEX_INITIALIZER, .ended = PTHREAD_COND_INITIALIZER};
 
 int activity_width(FILE *stream)
@@ -38,7 +38,7 @@ static void draw(const char *text)
     if (length > most) length = most;
     int blanks = activity.shown > length ? activity.shown - length : 0;
     fprintf(activity.stream, "\r%.*s%*s", length, text, blanks, "");
-    // Back to the end of the text; a line that is erased leaves the cursor at its start.
+    // After erasing, the cursor stays at the start of the line; otherwise at the end of the text.
     if (length == 0) fputc('\r', activity.stream);
     fflush(activity.stream);
     activity.shown = length;

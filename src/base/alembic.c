@@ -74,7 +74,7 @@ static void multiply(double to[4][4], double a[4][4], double b[4][4])
     memcpy(to, product, sizeof product);
 }
 
-// About an axis (Rodrigues), for rows.
+// A rotation about an axis (Rodrigues' formula) for row vectors.
 static void rotate(double m[4][4], const double axis[3], double degrees)
 {
     double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
@@ -99,7 +99,7 @@ static void step_matrix(double m[4][4], Step step, const double *v)
         rotate(m, (const double[3]){step == ROTATE_X, step == ROTATE_Y, step == ROTATE_Z}, v[0]);
 }
 
-// The last step acts first.
+// The last step in the list is applied first.
 static void transform_matrix(const Ogawa *file, const AlembicTransform *transform, double time,
                              double m[4][4])
 {

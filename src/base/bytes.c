@@ -12,9 +12,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Reads until the end from `descriptor` into a buffer that starts with room for `capacity` bytes
-// and the zero. Returns 0 or an errno. Growing lets pipes and /proc files, whose size is not known,
-// be read too.
+// Reads from `descriptor` until the end of the file, into a buffer that first has room for
+// `capacity` bytes and a zero. The buffer grows, because the size of pipes and /proc files is not
+// known in advance. Returns 0 or an errno.
 static int read_all(Bytes *bytes, int descriptor, size_t capacity)
 {
     bytes->data = malloc(capacity + 1);
@@ -54,7 +54,8 @@ Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
                          "%s: a device, which may never end: expected a file or a pipe", path);
     }
     claims_note_input(path, &status);
-    // One byte more than the size, so that the end of file is met without growing.
+    // One byte more than the size, so that read() reports the end of the file before the buffer
+    // must grow.
     size_t capacity = S_ISREG(status.st_mode) ? (size_t)status.st_size + 1 : 4096;
     int reason = read_all(bytes, descriptor, capacity);
     close(descriptor);
@@ -94,7 +95,7 @@ void bytes_drop_mark(Bytes *bytes)
     size_t length = sizeof MARK - 1;
     if (bytes->size < length || memcmp(bytes->data, MARK, length) != 0) return;
     bytes->size -= length;
-    memmove(bytes->data, bytes->data + length, bytes->size + 1); // with the zero
+    memmove(bytes->data, bytes->data + length, bytes->size + 1); // including the zero
 }
 
 Result bytes_write_file(const Bytes *bytes, const char *path, Error *error)

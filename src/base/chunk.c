@@ -12,13 +12,13 @@
 
 enum { VERSION = 1, MAGIC_BYTES = 8, TAG_BYTES = 4 };
 
-// Little-endian, as in the file.
+// All numbers are little-endian, as in the file.
 typedef struct Header {
     char tag[TAG_BYTES];
     uint32_t number;
     uint64_t size;
     uint32_t checksum;        // of the payload
-    uint32_t header_checksum; // of the 20 bytes before
+    uint32_t header_checksum; // of the first 20 bytes of the header
 } Header;
 _Static_assert(sizeof(Header) == CHUNK_HEADER_BYTES, "a header has no holes");
 
@@ -63,7 +63,7 @@ static Result fail_at(const ChunkFile *file, uint64_t at, const char *what, Erro
                      (unsigned long long)at, what);
 }
 
-// After chunk_file_read_raw has failed.
+// Reports a failed chunk_file_read_raw: the errno or, if there is none, `ended`.
 static Result fail_to_read(const ChunkFile *file, uint64_t at, const char *ended, Error *error)
 {
     return fail_at(file, at, errno ? strerror(errno) : ended, error);

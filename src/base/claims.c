@@ -8,11 +8,11 @@
 #include <string.h>
 
 typedef struct Link {
-    Claim claim; // first, so that a claim leads back to its link
+    Claim claim; // first, so that a Claim * can be cast to its Link *
     struct Link *next;
 } Link;
 
-// A file that is read or written.
+// A file that the run has read or written.
 typedef struct Known {
     dev_t device;
     ino_t inode;
@@ -20,9 +20,9 @@ typedef struct Known {
     char path[];
 } Known;
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // of the tree
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // protects the tree
 static Link *first;
-static void *tree; // of Known
+static void *tree; // a search tree of Known
 
 Claim *claims_add(const Claim *claim)
 {
@@ -74,7 +74,7 @@ static void note(const char *path, const struct stat *file, bool written)
     strcpy(known->path, path);
     pthread_mutex_lock(&lock);
     Known **found = tsearch(known, &tree, order);
-    if (found && *found != known && written) { // the inode of a file that is gone came back
+    if (found && *found != known && written) { // the old file is gone and its inode is used again
         free(*found);
         *found = known;
     } else if (!found || *found != known) {

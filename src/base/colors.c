@@ -5,9 +5,9 @@
 
 #include <strings.h>
 
-// Hair's are means over a head in the studio's light, not of its highlights: the darkest is what
-// hair that lets no light through still reflects, the brightest what hair without pigment sends
-// back (docs/look.md).
+// Hair colours are means over a head in the studio light, not colours of highlights. The darkest is
+// what opaque fibres still reflect, the brightest what fibres without pigment reflect
+// (docs/look.md).
 const ColorName COLOR_NAMES[COLOR_NAME_COUNT] = {
     {"black", "#000000", "#262220"},
     {"silver", "#c0c0c0", "#8f8d89"},

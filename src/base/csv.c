@@ -11,7 +11,7 @@ static size_t count_of(const char *text, const char *end, char wanted)
     return count;
 }
 
-// Cuts lines into fields in place.
+// Splits the lines into fields, in place.
 static Result cut_lines(Csv *csv, Error *error)
 {
     char *rest = (char *)csv->bytes.data;

@@ -14,21 +14,21 @@ static void put_slowly(FILE *stream, float value)
         snprintf(text, sizeof text, "%.*g", digits, (double)value);
         if (strtof(text, NULL) == value) break;
     }
-    // What stands between the digits is the locale's decimal separator, of one or more bytes.
+    // Skip the locale's decimal separator, which may have several bytes.
     size_t whole = strspn(text, "+-0123456789einfa");
     size_t separator = strcspn(text + whole, "0123456789");
     fprintf(stream, "%.*s", (int)whole, text);
     if (text[whole]) fprintf(stream, ".%s", text + whole + separator);
 }
 
-// --- The same, ten times as fast, for 1e-4 <= |value| < 1e5, where %g writes no exponent.
+// --- A faster way (10 times) for 1e-4 <= |value| < 1e5, where %g writes no exponent.
 //
-// With k decimals the number is n = round(|value| 10^k). The product is exact but for one rounding
-// to double, 2^-53 of it: n is right unless the product lies that close to the middle between two
-// whole numbers. n / 10^k, rounded once as well, reads back as `value` if it lies between the
-// middles of `value` and its neighbours, and that is certain unless it is that close to one. Nine
-// digits are below 2^30, so that "close" may be generous: 2^-20 of a unit, and 2^-20 of the gap
-// between two floats. What is not certain goes the slow way.
+// With k decimals the number is n = round(|value| 10^k). The product in double has a relative error
+// of at most 2^-53, so n is certain unless the product is that close to the midpoint of two
+// integers. n / 10^k reads back as `value` if it lies between the midpoints of `value` and its
+// neighbouring floats; that is certain, too, unless it is very close to a midpoint. n has at most
+// nine digits (below 2^30), which leaves room for generous margins: 2^-20 of a unit and 2^-20 of
+// half the gap between floats. Uncertain cases take the slow way.
 
 typedef enum Answer { NO, YES, UNSURE } Answer;
 
@@ -39,20 +39,21 @@ static Answer reads_back(double value, double half_gap, uint32_t n, double power
     return off < 1 ? YES : NO;
 }
 
-// Finds n and k of the fewest significant digits from 6 to 9; false if it is not certain.
+// Finds n and k with the fewest significant digits, from 6 to 9. False if the result is uncertain.
 static bool find_digits(double value, uint32_t *n, int *decimals)
 {
     static const double powers[] = {1,   1e1, 1e2, 1e3,  1e4,  1e5, 1e6,
                                     1e7, 1e8, 1e9, 1e10, 1e11, 1e12};
-    int exponent, whole = -3; // of value; of its first digit: value < 10^whole
-    if (frexp(value, &exponent) == 0.5) return false; // the gap below is half the one above
+    int exponent, whole = -3; // binary exponent of value; digits before the point: value < 10^whole
+    // A power of two: the gap below is half the gap above.
+    if (frexp(value, &exponent) == 0.5) return false;
     double half_gap = ldexp(1, exponent - 25);
     while (value >= (whole >= 0 ? powers[whole] : 1 / powers[-whole])) whole++;
     for (int digits = 6; digits <= 9; digits++) {
         *decimals = digits - whole;
         double product = value * powers[*decimals], nearest = rint(product);
         if (fabs(fabs(product - nearest) - 0.5) < 0x1p-20) return false;
-        if (nearest >= powers[digits]) return false; // 999999.7 has a digit more
+        if (nearest >= powers[digits]) return false; // rounding up added a digit, as for 999999.7
         *n = (uint32_t)nearest;
         Answer answer = reads_back(value, half_gap, *n, powers[*decimals]);
         if (answer == UNSURE) return false;

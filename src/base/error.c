@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// Quotes the line, which is freed; NULL: there was no memory for it.
+// Takes over and quotes the line. NULL means that there was no memory for it.
 static void set_text(Error *error, char *line)
 {
     if (line)

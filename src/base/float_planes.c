@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Measured on 10,000 x 32 particles: level 6 takes 4 times as long for 1 % less.
+// Measured on 10,000 x 32 particles: level 6 takes 4 times as long and saves 1 %.
 enum { DEFLATE_LEVEL = 1, PLANES = 4, SIZE_BYTES = 8 };
 
-// Where bytes have more bits of information than this, deflate finds nothing.
+// Bytes with more bits of entropy than this are not worth compressing.
 static const double NOISE_BITS = 7.8;
 
 size_t float_planes_bound(size_t count)
@@ -19,7 +19,7 @@ size_t float_planes_bound(size_t count)
     return PLANES * (count + SIZE_BYTES);
 }
 
-// A float's bits as an integer in the order of the numbers: neighbouring floats differ by 1.
+// Maps a float to an integer so that the order is kept and neighbouring floats differ by 1.
 static uint32_t order_of(float value)
 {
     uint32_t bits;
@@ -27,8 +27,9 @@ static uint32_t order_of(float value)
     return bits >> 31 ? ~bits : bits | 0x80000000u;
 }
 
-// Folded, the distances 0, -1, 1, -2, ... are 0, 1, 2, 3, ...: small ones either way have zeros
-// above. This is one of their bytes; planes are made one by one, since frames can be large.
+// Writes byte `plane` of each value's folded distance from the value before. Folding maps the
+// distances 0, -1, 1, -2, ... to 0, 1, 2, 3, ..., so small distances have zeros in their high
+// bytes. Planes are made one by one to save memory, since frames can be large.
 static void split(const float *values, size_t count, size_t stride, int plane, uint8_t *bytes)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -39,8 +40,8 @@ static void split(const float *values, size_t count, size_t stride, int plane, u
     }
 }
 
-// Puts a plane's bytes into the folded distances, which lie in the room of the values; plane 0 is
-// the first.
+// Adds one byte plane to the folded distances, which are stored in the array of values. Plane 0
+// must come first, because it initialises them.
 static void put_plane(float *values, size_t count, int plane, const uint8_t *bytes)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -73,7 +74,8 @@ static bool is_noise(const uint8_t *bytes, size_t count)
     return bits > NOISE_BITS * (double)count;
 }
 
-// One plane behind its size: deflated or, with the size that it has unpacked, as it is.
+// Writes a plane: its packed size, then its bytes. A plane that does not compress is stored as it
+// is; its packed size then equals its unpacked size.
 static size_t pack_plane(struct libdeflate_compressor *compressor, const uint8_t *plane,
                          size_t count, uint8_t *packed)
 {
@@ -104,7 +106,7 @@ size_t float_planes_pack(const float *values, size_t count, size_t stride, uint8
     return size;
 }
 
-// Returns how many bytes of `packed` the plane takes, 0 if they make no sense.
+// Returns the number of bytes of `packed` that the plane takes; 0 if they are invalid.
 static size_t unpack_plane(struct libdeflate_decompressor *decompressor, uint8_t *plane,
                            size_t count, const uint8_t *packed, size_t left)
 {

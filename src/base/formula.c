@@ -18,14 +18,15 @@ static double smoothstep(double a, double b, double x)
     return u * u * (3 - 2 * u);
 }
 
-// muParser prints errors itself unless somebody listens; formula_create asks for them by mupError.
+// Without an error handler muParser prints errors itself. formula_create asks for errors by
+// mupError.
 static void stay_silent(muParserHandle_t parser)
 {
     (void)parser;
 }
 
-// What the parser says is wrong and at which character, from 1: its words have the place, from 0
-// and in several forms, and a full stop.
+// Describes the parser's error as "reason at character N", N counted from 1. muParser's message has
+// its own place (counted from 0, in several forms) and ends with a full stop; both are removed.
 static void describe_fault(char *text, size_t size, const Formula *formula)
 {
     const char *message = mupGetErrorMsg(formula->parser), *end_of_words = NULL;
@@ -34,7 +35,7 @@ static void describe_fault(char *text, size_t size, const Formula *formula)
          *tail && !end_of_words; ++tail)
         end_of_words = strstr(message, *tail);
     char *own = strndup(message, end_of_words ? (size_t)(end_of_words - message) : strlen(message));
-    // Half of the room: the place comes behind.
+    // Leave half of the room for the place.
     quote_line(text, size / 2, own ? own : "out of memory");
     free(own);
     size_t length = strlen(text);
@@ -45,8 +46,8 @@ static void describe_fault(char *text, size_t size, const Formula *formula)
         snprintf(text + length, size - length, " at character %d", (place < end ? place : end) + 1);
 }
 
-// NULL: none. A probe of what the parser lets pass: `1,2` is two values, `t=3` sets the time.
-// `words`: room for the parser's own.
+// Evaluates the formula once to find faults that parsing lets pass: `1,2` has two values, `t=3`
+// sets the time. Returns NULL if there are none. `words` is a buffer for the message.
 static const char *find_fault(const Formula *formula, char *words, size_t size)
 {
     const double probe = 0.25;

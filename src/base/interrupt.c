@@ -4,7 +4,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-// Lock-free, so both a signal handler and any thread may touch them.
+// Lock-free atomics, which both a signal handler and any thread may use.
 static atomic_bool requested, noticed;
 static pthread_t main_thread;
 

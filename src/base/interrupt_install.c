@@ -14,11 +14,11 @@
 #include <time.h>
 #include <unistd.h>
 
-// How long the program may take to notice, and then to end: it may have the state of a large
-// simulation to write.
+// Time for the program to notice the request, and then to end: it may have to write the state of a
+// large simulation.
 enum { NOTICE_MS = 300, END_MS = 20000 };
 
-static int signals[] = {SIGINT, SIGTERM, SIGHUP}; // 0: left as it was
+static int signals[] = {SIGINT, SIGTERM, SIGHUP}; // 0 if left as it was
 enum { SIGNAL_COUNT = sizeof signals / sizeof *signals };
 
 static sem_t request_came;
@@ -39,7 +39,8 @@ static void wait_ms(int ms)
     }
 }
 
-// Ends a program that is deep in some work, or in a library's, when a signal comes.
+// Waits for a signal, then ends the program if it does not react in time, for instance because it
+// is inside a library.
 static void *watch(void *unused)
 {
     (void)unused;
@@ -52,7 +53,7 @@ static void *watch(void *unused)
     _exit(RESULT_INTERRUPTED);
 }
 
-// A thread that signals go past. Without it, only loops that look at the flag end.
+// Starts the watching thread. If that fails, only loops that test the flag can be interrupted.
 static void start_watch(void)
 {
     pthread_t thread;
@@ -63,11 +64,11 @@ static void start_watch(void)
 
 void interrupt_install(void)
 {
-    // Writes to files must not stop half way for the signal's sake, hence SA_RESTART.
+    // SA_RESTART: a signal must not make a write to a file fail.
     struct sigaction action = {.sa_handler = request, .sa_flags = SA_RESTART}, old;
     sigemptyset(&action.sa_mask);
     start_watch();
-    // nohup's wish counts.
+    // nohup sets SIGHUP to be ignored; keep that.
     if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler == SIG_IGN) signals[2] = 0;
     for (int i = 0; i < SIGNAL_COUNT; ++i)
         if (signals[i]) sigaction(signals[i], &action, NULL);

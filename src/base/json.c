@@ -15,9 +15,9 @@ enum { EXCERPT_SIZE = 64 };
 
 static _Thread_local bool memory_short;
 
-// When memory is short, jansson 2.14 loses characters of what it reads and then stops at an
-// assertion of its own (lex_scan_string). It gets a reserve instead, which is never used again:
-// what was read does not count then (json_read), but the end is an orderly one.
+// If memory runs out, jansson 2.14 drops characters and then fails an assertion of its own
+// (lex_scan_string). Instead it gets memory from this reserve, which is never freed, and json_read
+// discards the result. So the program ends with an error message instead of an abort.
 enum { RESERVE_BYTES = 1 << 18, ALIGNMENT = 16 };
 static _Alignas(ALIGNMENT) char reserve[RESERVE_BYTES];
 static atomic_size_t reserve_used;
@@ -44,8 +44,8 @@ static void release(void *block)
     if (at < first || at >= first + RESERVE_BYTES) free(block);
 }
 
-// Before main: no value may come from another allocator. Where a program that loads this one as a
-// library has chosen its own, that stays.
+// Runs before main, so that no value comes from another allocator. A host program that loads the
+// library may have set an allocator of its own, which is kept.
 static __attribute__((constructor)) void watch_memory(void)
 {
     json_malloc_t allocates;
@@ -64,7 +64,7 @@ void json_memory_forget(void)
     memory_short = false;
 }
 
-// Writes the place's name from the root on; returns its length, cut at `size` - 1.
+// Writes the path of the place, from the root on. Returns its length, at most `size` - 1.
 static size_t name_place(const JsonPlace *place, char *text, size_t size)
 {
     size_t length = place->parent ? name_place(place->parent, text, size) : 0;
@@ -87,13 +87,13 @@ Result json_fail(const JsonPlace *place, Error *error, const char *format, ...)
     return error_set(error, RESULT_BAD_INPUT, "%s: %s", name, rest);
 }
 
-// The beginning of a value's text.
+// The first characters of a value's text.
 typedef struct Excerpt {
     char text[EXCERPT_SIZE];
     size_t length;
 } Excerpt;
 
-// json_dump_callback_t: takes what fits and ends the dump when the excerpt is full.
+// A json_dump_callback_t: stores what fits, and stops the dump when the excerpt is full.
 static int append_to_excerpt(const char *bytes, size_t size, void *data)
 {
     Excerpt *excerpt = data;
@@ -105,7 +105,7 @@ static int append_to_excerpt(const char *bytes, size_t size, void *data)
     return fits ? 0 : -1;
 }
 
-// The value as JSON on one line, cut between characters.
+// The value as JSON on one line, cut at a character boundary.
 static Excerpt excerpt_value(const json_t *value)
 {
     Excerpt excerpt = {.length = 0};
@@ -228,7 +228,7 @@ Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t f
     json_error_t why;
     *value = json_read(bytes->data, bytes->size, flags, &why);
     if (*value) return RESULT_OK;
-    // jansson has no place for what is not the text's fault.
+    // jansson cannot report errors that are not in the text.
     if (json_memory_short()) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
     return error_set(error, RESULT_BAD_INPUT, "%s:%d:%d: %s", path, why.line, why.column, why.text);
 }

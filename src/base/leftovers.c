@@ -19,14 +19,14 @@
 
 struct Leftover {
     Leftover *next;
-    int group;  // 0: a file
-    int folder; // of the file
+    int group;  // process group; 0 if this is a file
+    int folder; // folder that holds the file
     char name[];
 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static Leftover *first;
-static struct stat swept; // the folder that was looked through last
+static struct stat swept; // the folder that was swept last
 
 static Leftover *add(int folder, const char *name, int group)
 {
@@ -66,7 +66,7 @@ void leftover_forget(Leftover *leftover)
 
 void leftovers_remove(void)
 {
-    pthread_mutex_lock(&lock); // and kept: nothing is added any more
+    pthread_mutex_lock(&lock); // not unlocked again, so that nothing can be added any more
     for (const Leftover *leftover = first; leftover; leftover = leftover->next) {
         if (leftover->group)
             kill(-leftover->group, SIGKILL);
@@ -75,9 +75,9 @@ void leftovers_remove(void)
     }
 }
 
-// --- Those of other runs.
+// --- Leftovers of other runs.
 
-// FNV-1a of the machine's name: a process number means nothing on another machine.
+// FNV-1a hash of the machine's name, because process numbers are only valid on their machine.
 static uint32_t hash_host(void)
 {
     char host[256] = "";
@@ -92,7 +92,7 @@ void leftovers_name(char name[LEFTOVER_NAME_SIZE], unsigned number)
     snprintf(name, LEFTOVER_NAME_SIZE, NAME_FORMAT, hash_host(), (long)getpid(), number);
 }
 
-// Whether the name is that of a temporary file whose process, on this machine, has ended.
+// Whether this is the name of a temporary file from this machine whose process has ended.
 static bool is_abandoned(const char *name)
 {
     unsigned host, number;
@@ -104,7 +104,8 @@ static bool is_abandoned(const char *name)
            errno == ESRCH;
 }
 
-// A container that shares the folder may have other process numbers: its files are locked.
+// A container that shares the folder has process numbers of its own. Files in use are locked, so
+// only unlocked ones are removed.
 static void remove_unlocked(int folder, const char *name)
 {
     int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);

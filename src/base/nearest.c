@@ -15,8 +15,8 @@ static void swap(uint32_t *a, uint32_t *b)
     *a = *b, *b = kept;
 }
 
-// Hoare's selection: what belongs in the place `middle` of begin .. end - 1 comes there, what is
-// less before it.
+// Hoare's selection: puts the element that belongs to place `middle` of begin .. end - 1 there, and
+// smaller ones before it.
 static void split(Nearest *nearest, uint32_t begin, uint32_t end, uint32_t middle, int axis)
 {
     int64_t low = begin, high = (int64_t)end - 1;
@@ -90,7 +90,7 @@ static void descend(Search *search, uint32_t begin, uint32_t end, int axis)
     double off = (double)search->from[axis] - (double)coordinate(search->nearest, middle, axis);
     int next = (axis + 1) % 3;
     visit(search, search->nearest->order[middle]);
-    // The side where the point itself lies comes first: the other one is rarely near enough then.
+    // Search the side of the point first: then the other side is rarely near enough.
     if (off < 0)
         descend(search, begin, middle, next);
     else

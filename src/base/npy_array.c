@@ -8,7 +8,7 @@
 
 static const char MAGIC[] = "\x93NUMPY";
 
-// --- The header: a Python dict of three keys.
+// --- The header, a Python dict with three keys.
 
 typedef struct Header {
     const char *at, *end;
@@ -74,7 +74,7 @@ static void read_shape(Header *header, NpyArray *array)
     }
 }
 
-// "<f4". False for what is no plain number or text.
+// Parses a type such as "<f4". False if it is neither a plain number nor text.
 static bool read_type(NpyArray *array, const char *text)
 {
     const char *at = text;

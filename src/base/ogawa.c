@@ -14,7 +14,7 @@ static const double MOST_PLACED_EACH_BYTE = 1024;
 // --- Groups and data.
 
 typedef struct Block {
-    uint64_t at, size; // of data: bytes; of a group: children
+    uint64_t at, size; // of data: bytes; of a group: number of children
 } Block;
 
 static uint64_t read_number(Reader *reader, uint64_t at)
@@ -61,7 +61,7 @@ static Block open_data(Reader *reader, uint64_t place)
     return data;
 }
 
-// Whether nobody has been here: a tree has each group once.
+// Whether the group at `at` is visited for the first time; a tree contains each group once.
 static bool is_new(Ogawa *file, uint64_t at)
 {
     Reader *reader = file->reader;
@@ -75,7 +75,7 @@ static bool is_new(Ogawa *file, uint64_t at)
     return true;
 }
 
-// --- Headers: numbers and texts one behind the other.
+// --- Headers: sequences of numbers and texts.
 
 typedef struct Cursor {
     Reader *reader;
@@ -96,7 +96,7 @@ static uint32_t take(Cursor *cursor, uint32_t bytes)
     return number;
 }
 
-// A text in the file; NULL after failing.
+// A text within the file; NULL after an error.
 static const char *take_text(Cursor *cursor, uint32_t length)
 {
     Reader *reader = cursor->reader;
@@ -110,7 +110,7 @@ static const char *take_text(Cursor *cursor, uint32_t length)
     return (const char *)reader->data + cursor->at - length;
 }
 
-// The text that headers name by a number, 0 an empty one.
+// The shared text with this number; 0 is the empty text.
 static const char *find_text(Ogawa *file, uint32_t number, uint32_t *length)
 {
     *length = 0;
@@ -126,7 +126,8 @@ static const char *find_text(Ogawa *file, uint32_t number, uint32_t *length)
     return text ? text : "";
 }
 
-// The text of an object's header, which stands there or is named by a number.
+// The metadata of an object's header: either written there, or given by the number of a shared
+// text.
 static const char *take_meta(Ogawa *file, Cursor *cursor, uint32_t number, uint32_t width,
                              uint32_t *length)
 {
@@ -137,7 +138,7 @@ static const char *take_meta(Ogawa *file, Cursor *cursor, uint32_t number, uint3
     return text ? text : "";
 }
 
-// The value of "key=value;..."; cut if it does not fit.
+// The value of `key` in "key=value;..."; cut if it does not fit.
 static void find_value(const char *text, uint32_t length, const char *key, char *value, size_t size)
 {
     size_t known = strlen(key);
@@ -199,7 +200,7 @@ static OgawaProperties read_compound(Ogawa *file, uint64_t place)
     if (!(headers & DATA_BIT)) return properties;
     Block data = open_data(reader, headers);
     if (data.size == 0 || !is_new(file, data.at)) return properties;
-    // The shortest header has 6 bytes.
+    // The shortest header has 6 bytes, which bounds their number.
     uint64_t most = data.size / 6 < group.size - 1 ? data.size / 6 : group.size - 1;
     properties.property = calloc((size_t)most + 1, sizeof *properties.property);
     if (!properties.property) reader_fail_memory(reader);
@@ -243,7 +244,7 @@ static double half_number(uint32_t bits)
 }
 
 typedef struct Pod {
-    char kind; // b, u, i, h (half), f; 0: no number
+    char kind; // b, u, i, h (half), f; 0 if not a number
     uint8_t bytes;
 } Pod;
 
@@ -281,7 +282,7 @@ double *ogawa_numbers(Ogawa *file, const OgawaProperty *property, uint32_t sampl
     if (sample >= property->samples) sample = property->samples ? property->samples - 1 : 0;
     if (property->last && sample >= property->first)
         place = (sample < property->last ? sample : property->last) - property->first + 1;
-    if (property->array) place *= 2; // each with its dimensions
+    if (property->array) place *= 2; // a sample has two children: values and dimensions
     Block group = open_group(reader, property->group);
     if (reader_ok(reader) && (place >= group.size || property->samples == 0 || !pod.kind)) {
         reader_fail(reader, "'%s': sample %u: expected numbers", property->name, sample);
@@ -305,7 +306,7 @@ double *ogawa_numbers(Ogawa *file, const OgawaProperty *property, uint32_t sampl
     return number;
 }
 
-// Items that are written once and named by number.
+// Replaces indices by the items they refer to.
 static double *expand(Ogawa *file, const OgawaProperty *indices, double *value, uint32_t extent,
                       size_t *count, const char *name)
 {
@@ -345,7 +346,7 @@ double *ogawa_parameter(Ogawa *file, const OgawaProperties *of, const char *name
         values = ogawa_find(&inner, ".vals");
     }
     const OgawaProperty *indices = ogawa_find(&inner, ".indices");
-    // Scalars in a row are items, too.
+    // A scalar property may hold one item per sample.
     bool fits = values && PODS[values->pod].kind && values->samples &&
                 (values->extent == extent || values->extent == 1);
     if (fits) value = ogawa_numbers(file, values, 0, count);
@@ -385,7 +386,7 @@ static void read_samplings(Ogawa *file, uint64_t place)
             if (!(fabs(time) < 1e9) || (i > 0 && time <= sampling->time[i - 1])) break;
             sampling->time[sampling->count++] = time;
         }
-        // Uneven times have a cycle beyond all numbers.
+        // Alembic marks uneven times by a huge cycle.
         if (!(sampling->cycle > 0 && sampling->cycle < 1e9)) sampling->cycle = 0;
     }
 }
@@ -503,7 +504,7 @@ bool ogawa_matches(const Bytes *bytes)
     return bytes->size >= 5 && memcmp(bytes->data, "Ogawa", 5) == 0;
 }
 
-// What a file of this program says about itself.
+// Reads the unit and the up axis, which files of this program contain.
 static void read_unit(Ogawa *file, uint64_t place)
 {
     char value[OGAWA_NAME_SIZE];

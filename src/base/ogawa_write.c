@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The layout is that of Alembic's own writer (lib/Alembic/Ogawa, AbcCoreOgawa).
+// The layout matches Alembic's own writer (lib/Alembic/Ogawa, AbcCoreOgawa).
 #include "base/ogawa_write.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 static const uint64_t DATA_BIT = UINT64_C(1) << 63;
 
-// --- Bytes, little-endian.
+// --- Bytes in little-endian order.
 
 void ogawa_add_bytes(OgawaBlock *block, const void *bytes, size_t size)
 {
@@ -44,7 +44,7 @@ void ogawa_add_double(OgawaBlock *block, double number)
     ogawa_add_number(block, bits, 8);
 }
 
-// --- The keys of data, by which readers know equal ones: MurmurHash3 (Appleby), 128 bits for x64.
+// --- Keys of data, by which readers recognise equal data: MurmurHash3 (Appleby), 128 bits for x64.
 
 static uint64_t turn(uint64_t x, int by)
 {
@@ -85,7 +85,7 @@ void ogawa_find_key(const uint8_t *data, size_t size, uint32_t seed, uint64_t ke
     key[0] = a, key[1] = b;
 }
 
-// --- Parts: each returns its place.
+// --- Parts of the file. Each function returns the place of the part.
 
 static void put(OgawaWriter *writer, const void *bytes, size_t size)
 {
@@ -115,7 +115,7 @@ uint64_t ogawa_put_data(OgawaWriter *writer, OgawaBlock *block)
     return place;
 }
 
-// The same with its key in front. `pod`: bytes of one number.
+// Like ogawa_put_data, but with the key in front. `pod`: bytes per number.
 uint64_t ogawa_put_sample(OgawaWriter *writer, OgawaBlock *block, uint32_t pod)
 {
     uint64_t key[2], place = writer->at | DATA_BIT;
@@ -169,7 +169,7 @@ static void add_property(OgawaCompound *compound, const char *name, const char *
     ogawa_add_text(&compound->headers, meta);
 }
 
-// Samples at places of data; scalars have no dimensions.
+// Adds a property whose samples are data at the given places. Scalars have no dimensions.
 void ogawa_add_samples(OgawaWriter *writer, OgawaCompound *to, const char *name, const char *meta,
                        bool array, OgawaPod pod, uint32_t extent, const uint64_t *sample,
                        size_t count)
@@ -190,7 +190,7 @@ void ogawa_add_samples(OgawaWriter *writer, OgawaCompound *to, const char *name,
                          extent << 12 | TEXT_FOLLOWS | (count > 1 ? HAS_SAMPLING : CONSTANT),
                      4);
     ogawa_add_number(&to->headers, count, 4);
-    if (count > 1) ogawa_add_number(&to->headers, 1, 4); // the second sampling
+    if (count > 1) ogawa_add_number(&to->headers, 1, 4); // use the second time sampling
     add_property(to, name, meta, group);
 }
 
@@ -217,7 +217,7 @@ void ogawa_add_compound(OgawaWriter *writer, OgawaCompound *to, const char *name
     add_property(to, name, meta, group);
 }
 
-// --- The file's beginning.
+// --- The beginning of the file.
 
 void ogawa_put_header(OgawaWriter *writer, bool closed, uint64_t root)
 {

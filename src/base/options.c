@@ -14,7 +14,7 @@
 
 enum { MOST_WORDS = 16, NAME_SIZE = 80 };
 
-// --- The parameters as options.
+// --- Parameters as options.
 
 #define BAR_WORD(value, word)     "|" word
 #define VALUE_BOOL(CHOICES)       NULL
@@ -51,7 +51,7 @@ const Option OPTIONS_OF_PARAMS[] = {
 };
 #undef PARAM
 
-// --- Walking.
+// --- Walking over the arguments.
 
 static bool names_equal(const char *a, const char *b)
 {
@@ -67,7 +67,7 @@ const Option *options_find(const Option *options, size_t count, const char *name
     for (size_t i = 0; i < count; ++i)
         if (letter ? options[i].letter == name[1] : names_equal(options[i].name, name))
             return &options[i];
-    // What has another name is a row of params.def.
+    // A parameter of params.def may have a second name.
     const ParamInfo *info = letter ? NULL : params_find(name);
     for (size_t i = 0; info && i < count; ++i)
         if (names_equal(options[i].name, info->name)) return &options[i];
@@ -99,7 +99,7 @@ static bool is_number(const char *text)
     return end != text && !*end;
 }
 
-// The next argument, for an option that has no value of its own.
+// Takes the next argument as the value, for an option without "=VALUE".
 static Result take_value(OptionsWalk *walk, OptionsArgument *argument, Error *error)
 {
     const char *next = walk->taken + 1 < walk->argc ? walk->argv[walk->taken + 1] : NULL;
@@ -216,7 +216,7 @@ static Result set_number(const OptionsArgument *argument, char *at, Error *error
     return RESULT_OK;
 }
 
-// Which of the words in "one|two|three" the text is.
+// Stores the index of the text among the words of "one|two|three".
 static Result set_word(const OptionsArgument *argument, char *at, Error *error)
 {
     char words[MOST_WORDS * 32], expected[MOST_WORDS * 32] = "";
@@ -290,7 +290,7 @@ Result options_parse(const OptionsProgram *program, void *values, int argc, char
             printf("%s %s\n", program->name, TRACTRIX_VERSION);
             return RESULT_OK;
         }
-        // Never ahead of what has been read.
+        // Operands are moved to the front, where arguments were already read.
         if (argument.found == OPTIONS_OPERAND)
             argv[1 + operands++] = argv[walk.taken];
         else

@@ -8,7 +8,7 @@
 
 enum { NAME_SIZE = 80, WORDS_SIZE = 1200, CLAUSE_SIZE = 200 };
 
-// What may stand behind an option.
+// The kind of value that follows an option.
 typedef enum ValueKind {
     VALUE_NONE,
     VALUE_WORDS,
@@ -17,7 +17,7 @@ typedef enum ValueKind {
     VALUE_TEXT,
 } ValueKind;
 
-// --- Names and words that the scripts of all shells need.
+// --- Names and words for the scripts of all shells.
 
 static const Option *option_at(const OptionsProgram *program, size_t i)
 {
@@ -30,7 +30,7 @@ static size_t count_options(const OptionsProgram *program)
     return program->option_count + OPTIONS_COMMON_COUNT;
 }
 
-// "camera-up" of camera_up.
+// Turns camera_up into "camera-up".
 static void write_name(char *text, size_t size, const char *name)
 {
     snprintf(text, size, "%s", name);
@@ -38,8 +38,8 @@ static void write_name(char *text, size_t size, const char *name)
         if (*at == '_') *at = '-';
 }
 
-// "_tractrix-gen-fur": the shell function, named like the manual page. zsh looks for a file of that
-// name.
+// The name of the shell function, "_tractrix-gen-fur". It follows the manual page's name, because
+// zsh looks for a file with the function's name.
 static void write_function(char *text, size_t size, const OptionsProgram *program)
 {
     snprintf(text, size, "_%s", program->page ? program->page : program->name);
@@ -61,7 +61,7 @@ static bool is_small(const char *word, size_t length)
     return length > 0;
 }
 
-// The small words of "one|two|N".
+// Adds the lower-case words of "one|two|N".
 static void add_choices(char *words, const char *value)
 {
     if (!strchr(value, '|')) return;
@@ -73,7 +73,7 @@ static void add_choices(char *words, const char *value)
     }
 }
 
-// Topics of --help.
+// Adds the topics of --help.
 static void add_topics(char *words, const OptionsProgram *program)
 {
     static const char *const OWN[] = {"all", "man", "markdown", "bash", "zsh", "fish"};
@@ -84,7 +84,7 @@ static void add_topics(char *words, const OptionsProgram *program)
         add_word(words, (*c)->topic, strlen((*c)->topic));
 }
 
-// The kind of the option's value and, of VALUE_WORDS, the words with a blank between them.
+// The kind of the option's value. For VALUE_WORDS, `words` receives the words, separated by blanks.
 static ValueKind find_value(const OptionsProgram *program, const Option *option, char *words)
 {
     const char *value = option->value;
@@ -100,7 +100,7 @@ static ValueKind find_value(const OptionsProgram *program, const Option *option,
     return strstr(value, "DIR") ? VALUE_FOLDERS : VALUE_TEXT;
 }
 
-// Whether "--no-NAME" is another option of the table.
+// Whether the switch can be negated by "--no-NAME". Not if the table has an option of that name.
 static bool has_negation(const OptionsProgram *program, const Option *option)
 {
     char name[NAME_SIZE];
@@ -109,8 +109,8 @@ static bool has_negation(const OptionsProgram *program, const Option *option)
            !options_find(program->options, program->option_count, name);
 }
 
-// The help as far as a list of completions has room: the first clause. A word and a colon are none:
-// "fur: short hair".
+// Shortens the help to its first clause, because lists of completions have little room. A single
+// word before a colon does not count as a clause: "fur: short hair".
 static void write_clause(char clause[CLAUSE_SIZE], const char *help)
 {
     static const char *const ENDS[] = {"; ", ": ", " ["};
@@ -125,7 +125,8 @@ static void write_clause(char clause[CLAUSE_SIZE], const char *help)
     snprintf(clause, CLAUSE_SIZE, "%.*s", (int)length, help);
 }
 
-// `text` with each of `special` behind a backslash, for single quotes of bash and zsh.
+// Writes `text` with a backslash before each character of `special`, inside single quotes of bash
+// or zsh.
 static void put_escaped(FILE *stream, const char *text, const char *special)
 {
     for (; *text; ++text) {
@@ -173,7 +174,7 @@ static void put_bash(FILE *stream, const OptionsProgram *program)
     char function[NAME_SIZE], below[NAME_SIZE];
     write_function(function, sizeof function, program);
     if (program->sub) put_bash(stream, program->sub);
-    // bash ends words at '=': --flag=value comes as three.
+    // bash splits words at '=', so --flag=value arrives as three words.
     fprintf(
         stream,
         "%s() {\n"
@@ -217,7 +218,7 @@ static void put_bash(FILE *stream, const OptionsProgram *program)
 
 static const char ZSH_SPECIAL[] = "\\[]:";
 
-// "NAME" or "X,Y,Z" as what _arguments shows while nothing can be offered, with the action.
+// The message "NAME" or "X,Y,Z", which _arguments shows if it cannot complete, and the action.
 static void put_zsh_value(FILE *stream, const OptionsProgram *program, const Option *option)
 {
     char words[WORDS_SIZE];
@@ -283,7 +284,7 @@ static void put_zsh_function(FILE *stream, const OptionsProgram *program)
         }
         fprintf(stream, "))'");
     }
-    // A program that passes its options on to this one gives more specs.
+    // A program that passes its options on to this one adds its own specs.
     fprintf(stream, " \\\n        \"${@:-*:file:_files}\"\n}\n");
 }
 
@@ -294,7 +295,7 @@ static void put_fish_text(FILE *stream, const char *text)
     for (; *text; ++text) fprintf(stream, *text == '\'' || *text == '\\' ? "\\%c" : "%c", *text);
 }
 
-// "complete -c tractrix-gen -n 'condition'": the beginning of every line.
+// The beginning of every line: "complete -c tractrix-gen -n 'condition'".
 static void put_fish_start(FILE *stream, const OptionsProgram *program, const char *condition)
 {
     fprintf(stream, "complete -c %s", program->name);
@@ -365,7 +366,8 @@ bool options_complete(const OptionsProgram *program, const char *shell, FILE *st
         put_bash(stream, program);
         fprintf(stream, "complete -F %s %s\n", function, program->name);
     } else if (zsh) {
-        // Read as a file of $fpath it is the function itself; read by `source`, it defines it.
+        // If zsh loads the file from $fpath, the file is the function's body and must call it; if
+        // it is read by `source`, it only registers the function.
         put_zsh_function(stream, program);
         fprintf(stream, "if [[ $funcstack[1] == %s ]]; then %s \"$@\"; else compdef %s %s; fi\n",
                 function, function, function, program->name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What programs say about themselves: on a terminal, as a manual page and in Markdown.
+// The help of programs: for a terminal, as a manual page and in Markdown.
 #include "base/options.h"
 #include "base/options_complete.h"
 #include "base/suggest.h"
@@ -36,7 +36,7 @@ static const char *heading_of(const OptionsProgram *program, size_t i)
     return i < program->option_count ? program->headings[i] : "Other";
 }
 
-// "--camera-up" of camera_up.
+// Turns camera_up into "--camera-up".
 static void write_name(char *text, size_t size, const char *name)
 {
     snprintf(text, size, "--%s", name);
@@ -44,7 +44,7 @@ static void write_name(char *text, size_t size, const char *name)
         if (*at == '_') *at = '-';
 }
 
-// "-j, --jobs N"
+// Writes "-j, --jobs N".
 static void write_flag(const Option *option, char *text, size_t size)
 {
     char letter[8] = "", name[80];
@@ -56,8 +56,8 @@ static void write_flag(const Option *option, char *text, size_t size)
 
 // --- Layout.
 
-// Words of `text` from `column` on, wrapped at WIDTH; lines but the first are indented. What stands
-// in [brackets] stays on one line.
+// Prints the words of `text` from `column` on, wrapped at WIDTH. Lines after the first are
+// indented. Text in [brackets] is not broken.
 static void put_wrapped(FILE *stream, const char *text, size_t column, size_t indent)
 {
     bool first = true;
@@ -93,7 +93,7 @@ static void put_heading(FILE *stream, const char *heading)
     fprintf(stream, "\n%s:\n", heading);
 }
 
-// With what roff would take for its own escaped.
+// Escapes the characters that roff would interpret.
 static void put_roff(FILE *stream, const char *text)
 {
     if (*text == '.' || *text == '\'') fputs("\\&", stream);
@@ -101,7 +101,7 @@ static void put_roff(FILE *stream, const char *text)
         if (*text == '\\')
             fputs("\\e", stream);
         else if (*text == '|')
-            fputs("|\\:", stream); // lists of words may break there
+            fputs("|\\:", stream); // lists of words may break here
         else if (*text == '-')
             fputs("\\-", stream);
         else
@@ -129,7 +129,7 @@ static void put_roff_section(FILE *stream, const char *title)
     fprintf(stream, "\"\n");
 }
 
-// A cell's text; '|' would end the cell.
+// Escapes '|', which would end the cell, and '*'.
 static void put_cell(FILE *stream, const char *text)
 {
     for (; *text; text++) fprintf(stream, *text == '|' || *text == '*' ? "\\%c" : "%c", *text);
@@ -151,7 +151,7 @@ static void put_table_heading(FILE *stream, const char *heading)
 
 // --- Options.
 
-// Which options are listed: of a topic, the brief ones, or all.
+// Which options to list: those of a topic, the brief ones, or all.
 typedef struct Selection {
     const char *topic;
     bool brief;
@@ -167,7 +167,7 @@ static bool selects(const OptionsProgram *program, Selection selection, size_t i
     return listed;
 }
 
-// Each heading once, with the options that stand under it.
+// Prints each heading once, followed by its options.
 static void list_options(FILE *stream, const OptionsProgram *program, Selection selection,
                          void (*heading)(FILE *stream, const char *heading),
                          void (*entry)(FILE *stream, const char *flag, const char *text))
@@ -204,7 +204,7 @@ static void put_usage(FILE *stream, const OptionsProgram *program)
     }
 }
 
-// "input (hair files), output (images), ..., all", cut at `size`.
+// Writes "input (hair files), output (images), ..., all", cut at `size`.
 static void list_topics(const OptionsProgram *program, bool explained, char *text, size_t size)
 {
     size_t length = 0;
@@ -335,7 +335,8 @@ static void put_markdown(FILE *stream, const OptionsProgram *program)
 
 // --- Topics.
 
-// The topic or option that may have been meant, as a user writes it; "": none.
+// Finds the topic or option that the user may have meant, spelled as he writes it; "" if there is
+// none.
 static void find_near(const OptionsProgram *program, const char *topic, char near[80])
 {
     enum { MOST = OPTIONS_MOST + 64 };

@@ -29,9 +29,9 @@ static Result fail_to_write(const char *path, int reason, Error *error)
                      outfile_is_stdout(path) ? "standard output" : path, strerror(reason));
 }
 
-// --- The place.
+// --- The place of the file.
 
-// Refuses a file that the run reads, or has written as another output.
+// Refuses a file that the run reads, or that it has written as another output.
 static Result check_identity(const char *path, const struct stat *file, Error *error)
 {
     char other[CLAIMS_PATH_SIZE];
@@ -43,14 +43,15 @@ static Result check_identity(const char *path, const struct stat *file, Error *e
                      written ? "this run has written" : "is read");
 }
 
-// Whether the folder of this path is the one that the claim has resolved. Of a whole folder, what
-// lies deeper is claimed, too, but is found by its own path.
+// Whether the claim has already resolved the folder of this path. A claim on a whole folder covers
+// subfolders, too, but has not resolved them.
 static bool is_resolved(const Claim *claim, const char *path)
 {
     return claim && !(claim->whole_folder && strchr(path + strlen(claim->before), '/'));
 }
 
-// Where the file of this path goes, with what is there. A claim has resolved the folder before.
+// Finds where the file of this path goes and what is already there. A claim may have resolved the
+// folder.
 static Result find_place(Place *place, const char *path, Error *error)
 {
     const Claim *claim = claims_find(path);
@@ -80,10 +81,10 @@ static Result find_place(Place *place, const char *path, Error *error)
     return result;
 }
 
-// --- Files that appear complete.
+// --- Files that appear only when they are complete.
 
-// Creates a file that did not exist. mkstemp would do but for its fixed permissions of 0600. -1
-// with errno.
+// Creates a new file with a temporary name. mkstemp would set the permissions to 0600. Returns -1
+// and sets errno on failure.
 static int create_temporary(OutFile *file)
 {
     int folder = file->place.folder;
@@ -94,7 +95,7 @@ static int create_temporary(OutFile *file)
         int descriptor = openat(folder, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor < 0 && errno == EEXIST) continue;
         if (descriptor < 0) return -1;
-        flock(descriptor, LOCK_SH | LOCK_NB); // somebody uses it; see leftovers_sweep
+        flock(descriptor, LOCK_SH | LOCK_NB); // marks the file as in use, for leftovers_sweep
         file->temporary = strdup(name);
         if (file->temporary) {
             file->leftover = leftover_add_file(folder, name);
@@ -108,15 +109,15 @@ static int create_temporary(OutFile *file)
     return -1;
 }
 
-// Devices, pipes and names of open files (/dev/stdout) cannot be replaced by renaming: they are
-// written as they are.
+// Devices, pipes and names of open files (/dev/stdout) cannot be replaced by renaming, so they are
+// opened directly.
 static int open_descriptor(OutFile *file, mode_t folders)
 {
     Place *place = &file->place;
     int link = place->is_alias ? 0 : O_NOFOLLOW;
     if (place->is_alias || (place->exists && !S_ISREG(place->file.st_mode)))
         return openat(place->folder, place->name, O_WRONLY | O_CLOEXEC | link);
-    // A rename would pass over a file that its owner has made read-only.
+    // The rename would replace even a read-only file, so check the permission here.
     if (place->exists && faccessat(place->folder, place->name, W_OK, 0) != 0) return -1;
     int reason = place_make(place, folders);
     if (!reason) return create_temporary(file);
@@ -186,8 +187,8 @@ int outfile_try_folder(const Place *place)
     return reason;
 }
 
-// The stream remembers that a write failed but not why. The file is lost, so one more byte may ask
-// again.
+// A stream remembers that a write failed, but not why. The file is lost anyway, so write one more
+// byte to get the errno again.
 static int find_write_error(OutFile *file)
 {
     errno = 0;
@@ -214,8 +215,8 @@ Result outfile_sync(OutFile *file, Error *error)
     return reason ? fail_to_write(file->path, reason, error) : RESULT_OK;
 }
 
-// Gives the file its final name; what that names by now is looked at once more. 0 or an errno, or
-// -1 with the error set.
+// Gives the file its final name, after checking once more what has that name now. Returns 0 or an
+// errno, or -1 if the error is set.
 static int rename_temporary(OutFile *file, const struct stat *written, Error *error)
 {
     const Place *place = &file->place;
@@ -265,7 +266,8 @@ Result outfile_start(Claim *claim, Error *error)
     if (!file) return fail_to_write(claim->before, ENOMEM, error);
     Result result = open_new(file, claim->before, 0777, error);
     if (result == RESULT_OK && !outfile_is_stdout(claim->before)) {
-        claim->started = file; // a pipe, too: its reader would take a close for the end
+        // A pipe stays open, too: closing it would look like the end to its reader.
+        claim->started = file;
         return RESULT_OK;
     }
     if (result == RESULT_OK) outfile_discard(file);
@@ -287,7 +289,7 @@ void outfile_end(void)
     claims_end();
 }
 
-// --- Files that are not replaced as a whole.
+// --- Files that are written in place.
 
 static Result open_as_it_is(int *descriptor, const char *path, int flags, Error *error)
 {
@@ -317,7 +319,7 @@ Result outfile_open_kept(int *descriptor, const char *path, Error *error)
     return open_as_it_is(descriptor, path, O_RDWR, error);
 }
 
-// Writes all; signals may interrupt.
+// Writes all bytes, even if signals interrupt.
 static bool write_all(int descriptor, const char *text, size_t size)
 {
     while (size) {

@@ -16,7 +16,7 @@ typedef struct Share {
     bool running;
 } Share;
 
-static atomic_int threads; // 0: not counted yet
+static atomic_int threads; // 0 if not counted yet
 
 static int count_processors(void)
 {

@@ -101,7 +101,8 @@ Result params_copy_section(SectionParams *to, const SectionParams *from, Error *
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         if (!owns_text(&PARAM_TABLE[i], SCOPE_SECTION)) continue;
         char **text = text_field(&PARAM_TABLE[i], to);
-        // Once one copy has failed the others become NULL, so that nothing is shared with `from`.
+        // After one failure set the remaining copies to NULL, so that `to` shares no text with
+        // `from`.
         *text = copied ? strdup(*text) : NULL;
         copied = *text != NULL;
     }
@@ -110,7 +111,7 @@ Result params_copy_section(SectionParams *to, const SectionParams *from, Error *
     return error_set(error, RESULT_FAILED, "out of memory");
 }
 
-// --- Finding rows.
+// --- Finding parameters.
 
 static bool names_equal(const char *a, const char *b)
 {
@@ -144,24 +145,25 @@ bool params_owned_by(const ParamInfo *info, const char *solver)
     return false;
 }
 
-// --- Values as text and back.
+// --- Values from and to text.
 
-// The units that have a name, in metres.
+// Units with a name, in metres.
 static const struct {
     const char *word;
     float metres;
 } LENGTH_UNITS[] = {{"m", 1.0f}, {"cm", 0.01f}, {"mm", 0.001f}, {"in", 0.0254f}};
 enum { LENGTH_UNIT_COUNT = sizeof LENGTH_UNITS / sizeof LENGTH_UNITS[0] };
 
-// What the text of each kind is: `count` numbers of a type with `separator` between them, or one of
-// its own. A description has `before` and `behind` around the range; NULL: there is no range.
+// The text form of each kind: `count` numbers of a type, separated by `separator`, or a form of its
+// own. The description of the kind is `before`, the range, `behind`; `behind` is NULL if there is
+// no range.
 typedef enum NumberType { NO_NUMBER, NUMBER_INT, NUMBER_UINT, NUMBER_FLOAT } NumberType;
 static const struct Form {
     const char *before, *behind;
     NumberType type;
     int count;
     char separator;
-    bool automatic; // or "auto"
+    bool automatic; // "auto" is allowed, too
 } FORMS[] = {
     [PARAM_BOOL] = {"true or false", NULL, NO_NUMBER, 0, 0, false},
     [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1, 0, false},
@@ -185,7 +187,7 @@ static const struct Form {
     [PARAM_PATH] = {"a path", NULL, NO_NUMBER, 0, 0, false},
 };
 
-// Where the numbers of a field begin: behind `automatic` if it has that.
+// Offset of the numbers within a field that also has a flag `automatic`.
 enum { AUTO_OFFSET = offsetof(AutoFloat, value) };
 _Static_assert(offsetof(AutoInt, value) == AUTO_OFFSET && offsetof(AutoVec3, value) == AUTO_OFFSET,
                "all Auto structs begin alike");
@@ -193,7 +195,7 @@ _Static_assert(offsetof(SectionParams, style_along) - offsetof(SectionParams, st
                    offsetof(ProfileNumber, along),
                "the two fields of a profile lie as a ProfileNumber");
 
-// A value on its way in: what the user wrote, and what it should have been.
+// A value being parsed: its parameter, and the user's text for the message.
 typedef struct Input {
     const ParamInfo *info;
     const char *text;
@@ -219,8 +221,8 @@ static const char *skip_blanks(const char *text)
     return text + strspn(text, " \t");
 }
 
-// A decimal number with blanks around it; returns what follows, or NULL if there is none. strtod
-// alone would also take hexadecimal, infinity and NaN.
+// Parses a decimal number, possibly with blanks around it. Returns the rest of the text, or NULL.
+// strtod alone would also accept hexadecimal numbers, infinity and NaN.
 static const char *read_number(const char *text, double *number)
 {
     text = skip_blanks(text);
@@ -231,7 +233,7 @@ static const char *read_number(const char *text, double *number)
     return skip_blanks(end);
 }
 
-// Integers, too, go through double, which holds all of those that any range allows.
+// Integers also go through double, which represents every integer in any range.
 static Result read_numbers(const Input *input, const struct Form *form, double *numbers)
 {
     const ParamInfo *info = input->info;
@@ -287,7 +289,7 @@ static Result parse_color(const Input *input, float value[3])
     return RESULT_OK;
 }
 
-// Words that choices once had, and the word that replaces them.
+// Removed words of choices and their replacements.
 static const struct {
     const char *name, *word, *instead;
 } REPLACED[] = {{"scatter", "dual", "grid"}};
@@ -312,7 +314,8 @@ static Result parse_choice(const Input *input, int *value)
 static Result parse_profile(const Input *input, ProfileNumber *number)
 {
     const ParamInfo *info = input->info;
-    if (!strpbrk(input->text, ":@")) { // which says the nearest number
+    // The error message for a plain number suggests the nearest permitted number.
+    if (!strpbrk(input->text, ":@")) {
         TRY(parse_numbers(input, &number->mean));
         number->along = (Profile){0};
         return RESULT_OK;

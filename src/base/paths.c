@@ -15,13 +15,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// A use, looked at.
+// A path use with the result of looking at the file system.
 typedef struct Spot {
     bool used, exists, numbered;
-    struct stat file, folder; // `file` if it exists, links followed
-    Place place;              // links followed but for numbered ones and folders
-    char *rest;               // owned; the path below `folder`, of a numbered one up to the number
-    char *after;              // owned; of a numbered one: behind the number
+    struct stat file, folder; // `file` is set if it exists, after following links
+    Place place;              // links are followed, except for numbered files and folders
+    // Owned. The path below `folder`; for a numbered file up to the number.
+    char *rest;
+    // Owned. For a numbered file: the text after the number.
+    char *after;
 } Spot;
 
 static bool is_written(PathRole role)
@@ -36,7 +38,7 @@ static void destroy_spot(Spot *spot)
     free(spot->after);
 }
 
-// Numbered ones have `before` and `after`.
+// Parses the path. A numbered path sets `before` and `after` of the target.
 static void parse(Target *target, const PathUse *use, bool exists)
 {
     bool known = use->role == PATH_TARGET && target_parse(target, use->path, NULL) == RESULT_OK;
@@ -44,7 +46,7 @@ static void parse(Target *target, const PathUse *use, bool exists)
     if (!known && pattern && strchr(use->path, '%')) target_parse_any(target, use->path, NULL);
 }
 
-// A path of a folder or file without slashes at its end, to be freed.
+// A copy of the path without trailing slashes; the caller frees it.
 static char *strip(const char *path)
 {
     size_t length = strlen(path);
@@ -52,15 +54,15 @@ static char *strip(const char *path)
     return strndup(path, length);
 }
 
-// Sets place and rest. 0 or an errno.
+// Sets place and rest. Returns 0 or an errno.
 static int find_place(Spot *spot, const char *path, bool follow)
 {
     int reason = place_find(&spot->place, path);
     if (!reason && !spot->numbered) reason = place_look(&spot->place, follow);
-    // What is no file's name ("..") is for the reader or writer to refuse.
+    // A path such as ".." that names no file is left to the reader or writer to refuse.
     if (reason && (reason != EISDIR || !spot->place.missing)) return reason;
-    if (spot->place.exists &&
-        !spot->place.is_link) { // also where ".." behind a missing folder leads
+    // A path with ".." behind a missing folder exists here, too, although stat failed.
+    if (spot->place.exists && !spot->place.is_link) {
         spot->exists = true;
         spot->file = spot->place.file;
     }
@@ -69,7 +71,7 @@ static int find_place(Spot *spot, const char *path, bool follow)
     return spot->rest ? 0 : ENOMEM;
 }
 
-// 0 or an errno.
+// Looks at the path of a use. Returns 0 or an errno.
 static int look(Spot *spot, const PathUse *use)
 {
     Target target = {0};
@@ -87,7 +89,7 @@ static int look(Spot *spot, const PathUse *use)
     if (spot->numbered) spot->after = strdup(target.after);
     bool room = path && (!spot->numbered || spot->after);
     int reason = room ? find_place(spot, path, !use->home && use->role != PATH_FOLDER) : ENOMEM;
-    // Whether an input can be reached is for its reader to say.
+    // If an input cannot be reached, its reader reports that.
     if (reason && reason != ENOMEM && !is_written(use->role)) {
         spot->used = spot->exists;
         reason = 0;
@@ -97,9 +99,9 @@ static int look(Spot *spot, const PathUse *use)
     return reason;
 }
 
-// --- What is one file.
+// --- Which paths are the same file.
 
-// Whether `name` is `before`, digits, `after`.
+// Whether `name` is `before`, digits, then `after`.
 static bool is_numbered(const char *name, const char *before, const char *after)
 {
     size_t length = strlen(before);
@@ -108,7 +110,7 @@ static bool is_numbered(const char *name, const char *before, const char *after)
     return digits > 0 && strcasecmp(name + length + digits, after) == 0;
 }
 
-// Whether a file may belong to both patterns.
+// Whether one file name can match both patterns.
 static bool patterns_meet(const Spot *a, const Spot *b)
 {
     size_t length = strlen(a->rest);
@@ -122,7 +124,7 @@ static bool is_folder(const Spot *spot)
     return spot->exists && S_ISDIR(spot->file.st_mode);
 }
 
-// Whether `folder` is one, and the file or files of `spot` lie in it.
+// Whether `folder` is a folder that directly contains the file or files of `spot`.
 static bool lies_in(const Spot *spot, const Spot *folder)
 {
     return is_folder(folder) && spot->rest && !strchr(spot->rest, '/') &&
@@ -138,7 +140,8 @@ static bool are_one(const Spot *a, const Spot *b)
     if (a->numbered && b->numbered) return patterns_meet(a, b);
     if (a->numbered) return is_numbered(b->rest, a->rest, a->after);
     if (b->numbered) return is_numbered(a->rest, b->rest, b->after);
-    // Of two spellings, one that exists and one that doesn't are two files.
+    // On a file system that ignores case, two spellings are one file. If one exists and the other
+    // does not, they are two files.
     return !a->exists && !b->exists && strcasecmp(a->rest, b->rest) == 0;
 }
 
@@ -154,14 +157,15 @@ static Result compare(const PathUse *use, const PathUse *other, Error *error)
                      use->path, other->name, other->path);
 }
 
-// All uses.
+// The uses to compare with each other.
 typedef struct Uses {
     const PathUse *uses;
     Spot *spots;
     int count;
 } Uses;
 
-// Compares a file or a pattern that use `i` writes with all other uses.
+// Compares a file or pattern that use `i` writes with all other uses. `once` compares each pair of
+// outputs only once.
 static Result compare_all(const Uses *all, int i, const Spot *spot, bool once, Error *error)
 {
     const PathUse *uses = all->uses;
@@ -174,7 +178,7 @@ static Result compare_all(const Uses *all, int i, const Spot *spot, bool once, E
     return RESULT_OK;
 }
 
-// --- One output.
+// --- Checking one output.
 
 static Result fail(const PathUse *use, int reason, Error *error)
 {
@@ -182,7 +186,8 @@ static Result fail(const PathUse *use, int reason, Error *error)
                      strerror(reason));
 }
 
-// An output that a scene file names.
+// Checks an output that a scene file names: it must be within the scene file's folder and not a
+// link.
 static Result check_home(const Spot *spot, const PathUse *use, struct stat *home, Error *error)
 {
     Place place;
@@ -202,7 +207,7 @@ static Result check_home(const Spot *spot, const PathUse *use, struct stat *home
                      use->home, use->name, use->path);
 }
 
-// A file of a numbered output that is there and is a link.
+// Checks a link that already exists under the name of one of the numbered files.
 static Result check_link(const Uses *all, int i, const char *name, Error *error)
 {
     const PathUse *use = &all->uses[i];
@@ -234,7 +239,7 @@ static Result check_links(const Uses *all, int i, Error *error)
     if (!spot->numbered || *spot->place.missing) return RESULT_OK;
     int folder = openat(spot->place.folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     DIR *directory = folder < 0 ? NULL : fdopendir(folder);
-    if (!directory) { // one may write into a folder without looking into it
+    if (!directory) { // the folder may be writable but not readable
         if (folder >= 0) close(folder);
         return RESULT_OK;
     }
@@ -249,8 +254,8 @@ static Result check_links(const Uses *all, int i, Error *error)
     return result;
 }
 
-// What can be told before anything is read; a file that is there may still be one's own in a folder
-// that isn't, if it is written as it is (a device, a pipe).
+// Checks permissions before anything is read. A device or a pipe is written in place, so it needs
+// no permission in its folder.
 static Result check_open(const Spot *spot, const PathUse *use, Error *error)
 {
     const Place *place = &spot->place;
@@ -289,7 +294,7 @@ static Result check_all(const Uses *all, Error *error)
 
 // --- Claims.
 
-// Makes the folder and tries that a file can be made there.
+// Makes the folder and checks that a file can be created in it.
 static Result try_folder(Claim *claim, const PathUse *use, Error *error)
 {
     int reason = place_make(&claim->place, 0777);
@@ -297,7 +302,7 @@ static Result try_folder(Claim *claim, const PathUse *use, Error *error)
     return reason ? fail(use, reason, error) : RESULT_OK;
 }
 
-// Sets the path of the claim and the place of its folder. 0 or an errno.
+// Sets the path of the claim and the place of its folder. Returns 0 or an errno.
 static int find_claim(Claim *claim, const Spot *spot, const PathUse *use)
 {
     Target target = {0};

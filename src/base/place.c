@@ -8,14 +8,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_LINKS = 40 }; // as many as Linux follows
+enum { MOST_LINKS = 40 }; // the limit of Linux
 
 static int open_folder(int at, const char *name)
 {
     return openat(at, name, O_PATH | O_DIRECTORY | O_CLOEXEC);
 }
 
-// The last name of a text like "a/b/", whose slash at the end goes.
+// Cuts the slash at the end of a text like "a/b/" and returns its last name.
 static char *pop(char *folders)
 {
     folders[strlen(folders) - 1] = 0;
@@ -23,7 +23,7 @@ static char *pop(char *folders)
     return slash ? slash + 1 : folders;
 }
 
-// Goes into the folder `name`, or notes it as missing.
+// Enters the folder `name`, or appends it to the missing folders.
 static int step(Place *place, const char *name)
 {
     bool up = strcmp(name, "..") == 0;
@@ -39,11 +39,11 @@ static int step(Place *place, const char *name)
         return 0;
     }
     if (!*place->missing && (up || errno != ENOENT)) return errno;
-    strcat(strcat(place->missing, name), "/"); // has room for the whole path
+    strcat(strcat(place->missing, name), "/"); // `missing` has room for the whole path
     return 0;
 }
 
-// As place_find, from the folder `at`, which may be AT_FDCWD.
+// Like place_find, but relative to the folder `at`, which may be AT_FDCWD.
 static int find_from(Place *place, int at, const char *path)
 {
     *place = (Place){.folder = open_folder(at, *path == '/' ? "/" : ".")};
@@ -66,7 +66,7 @@ int place_find(Place *place, const char *path)
     return find_from(place, AT_FDCWD, path);
 }
 
-// Goes on to where the link leads.
+// Moves the place to the target of the link.
 static int follow_link(Place *place)
 {
     char target[PATH_MAX];
@@ -81,7 +81,7 @@ static int follow_link(Place *place)
     return 0;
 }
 
-// Without following links.
+// Looks up the name without following links.
 static int look(Place *place)
 {
     const char *name = place->name;
@@ -106,7 +106,8 @@ int place_look(Place *place, bool follow)
         reason = ++links > MOST_LINKS ? ELOOP : follow_link(place);
         if (!reason) reason = look(place);
     }
-    // Names in /proc that only look like links: the target has no name, or not this one.
+    // Links in /proc may name a target without a name, or with another file's name. Then stay at
+    // the link and mark it as an alias of the open file.
     bool found = !reason && place->exists && place_is_same(&place->file, &open_file);
     if (leads && !found && first.folder >= 0) {
         Place swap = *place;
@@ -130,7 +131,7 @@ int place_make(Place *place, mode_t mode)
     for (; name && !reason; name = strtok_r(NULL, "/", &rest)) {
         bool own = mkdirat(place->folder, name, mode) == 0;
         int why = own || errno == EEXIST ? 0 : errno;
-        // mkdirat may say "no permission" of a folder that is there.
+        // mkdirat may fail with "permission denied" although the folder exists.
         int next = open_folder(place->folder, name);
         if (next < 0) {
             reason = why ? why : errno;
@@ -156,7 +157,7 @@ void place_unmake(Place *place)
         char *name = pop(place->made);
         int above = open_folder(place->folder, "..");
         bool gone = above >= 0 && unlinkat(above, name, AT_REMOVEDIR) == 0;
-        *name = 0; // what is left ends with the slash of the folder above
+        *name = 0; // now ends with the slash of the parent folder
         if (!gone) *place->made = 0;
         if (above < 0) continue;
         close(place->folder);

@@ -14,7 +14,7 @@ bool ply_matches(const Bytes *bytes)
     return bytes->size >= 5 && memcmp(at, "ply", 3) == 0 && strchr(" \t\r\n", at[3]) && at[3];
 }
 
-// --- The header: lines of words.
+// --- The header, lines of words.
 
 static void read_name(PlyFile *ply, char name[PLY_NAME_SIZE], const char *what)
 {
@@ -83,8 +83,8 @@ static void read_property(PlyFile *ply)
     element->property_count++;
 }
 
-// Up to the newline behind end_header, which a carriage return may precede; data may begin with any
-// byte.
+// Skips to the byte after end_header and its newline, which a carriage return may precede. No other
+// white space is skipped, because data may begin with any byte.
 static void end_header(PlyFile *ply)
 {
     Reader *reader = ply->reader;
@@ -123,7 +123,7 @@ void ply_read_header(PlyFile *ply)
 
 // --- Numbers.
 
-// Of any type; the bytes are there.
+// Converts the bytes of a number of any type.
 static double convert_bytes(const PlyFile *ply, const uint8_t *bytes, PlyType type)
 {
     uint64_t bits = 0;
@@ -167,7 +167,7 @@ static double read_number(PlyFile *ply, PlyType type, bool whole)
     return (double)reader_read_number(reader, "a number");
 }
 
-// The first `most` numbers go to `list`, all others are passed over.
+// Stores the first `most` numbers in `list` and skips the rest.
 static uint32_t read_list(PlyFile *ply, const PlyProperty *property, uint32_t *list, uint32_t most)
 {
     Reader *reader = ply->reader;
@@ -210,7 +210,7 @@ void ply_read_row(PlyFile *ply, const PlyElement *element, double *values)
     ply_read_row_list(ply, element, values, NULL, 0, &unused);
 }
 
-// The least that an element takes in the file, bytes: in text a digit and a blank for each number.
+// The fewest bytes that an element takes in the file. In text, a number takes a digit and a blank.
 static uint64_t least_size(const PlyFile *ply, const PlyElement *element)
 {
     uint64_t size = 0;

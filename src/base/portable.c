@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-// The Taylor series up to x^15: what is left out is below x^17/17! <= 6.1e-12 for |x| <= pi/2.
+// The Taylor series up to x^15. The remainder is below x^17/17! <= 6.1e-12 for |x| <= pi/2.
 static double quarter_sine(double turns)
 {
     double x = 6.283185307179586477 * turns, q = x * x;

@@ -30,7 +30,7 @@ static float mean_of(const Profile *along)
     return (float)sum;
 }
 
-// A decimal number; strtod alone would also take hexadecimal, infinity and NaN.
+// Parses a decimal number; strtod alone would also accept hexadecimal numbers, infinity and NaN.
 static bool read_number(const char **at, double *number)
 {
     const char *text = *at + strspn(*at, " \t");
@@ -42,7 +42,7 @@ static bool read_number(const char **at, double *number)
     return true;
 }
 
-// Points as they are written; places that are not are NAN's stand-in, -1.
+// Reads the points. A point without a place gets the place -1.
 static bool read_points(Profile *along, const char *at, double minimum, double maximum)
 {
     for (;;) {
@@ -60,7 +60,7 @@ static bool read_points(Profile *along, const char *at, double minimum, double m
     }
 }
 
-// Places that were not written; whether all ascend then.
+// Fills in the missing places; false if the places do not ascend.
 static bool place_points(Profile *along)
 {
     uint32_t last = along->count - 1;

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// Whether standard output is a pipe whose reader has gone, as `head` does when it has enough.
+// Whether standard output is a pipe whose reader has closed it, as `head` does when it has enough.
 static bool reader_left(void)
 {
     struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
@@ -22,7 +22,7 @@ int program_end(const char *name, Result result, Error *error)
     bool reported = result != RESULT_OK && error->text[0];
     errno = 0;
     bool lost = fflush(stdout) != 0 || ferror(stdout);
-    // The stream keeps that an earlier write failed, not why: what is lost is asked for again.
+    // A stream remembers that a write failed, but not why; write once more to get the errno.
     if (lost && !errno && write(STDOUT_FILENO, "\n", 1) >= 0) errno = EIO;
     if (lost && !reported && !reader_left())
         result =

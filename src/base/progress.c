@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #define DRAW_INTERVAL_S 0.1
-// The rate follows a change within about this time; shorter makes the remaining time jump.
+// Time constant with which the rate follows changes. A shorter one makes the remaining time jump.
 #define SMOOTHING_S 3.0
 #define COLUMNS_MIN 40
 #define COLUMNS_MAX 200
@@ -30,7 +30,7 @@ void progress_start(Progress *progress, FILE *stream, int total, bool quiet)
     progress_start_at(progress, stream, total, quiet, 1e-3 * clock_ms());
 }
 
-// "h:mm:ss" or "m:ss".
+// Writes "h:mm:ss" or "m:ss".
 static int format_duration(char *text, size_t size, double seconds)
 {
     long whole = seconds < 359999.0 ? lround(ceil(seconds)) : 359999;
@@ -48,7 +48,7 @@ int progress_format(char *line, size_t size, int columns, int done, int total, d
         format_duration(left, sizeof left, (total - done) / rate);
         tail_length = snprintf(tail, sizeof tail, "%.3g/s, %s left", rate, left);
     }
-    // The bar takes the rest but for its brackets, two spaces and the last column, where terminals
+    // The bar takes the rest, less its brackets, two spaces and the last column, where terminals
     // wrap.
     int bar = columns - 1 - count_length - tail_length - 4;
     if (bar > BAR_MAX) bar = BAR_MAX;
@@ -69,7 +69,7 @@ static void draw(Progress *progress)
     int before = progress->shown;
     progress->shown = length;
     if (activity_line(progress->stream, line)) return;
-    // Blanks cover what a longer line left: not every terminal knows the codes to erase.
+    // Overwrite the rest of a longer line with blanks, because not every terminal can erase.
     int blanks = before > length ? before - length : 0;
     fprintf(progress->stream, "\r%s%*s", line, blanks, "");
     fflush(progress->stream);
@@ -82,8 +82,8 @@ void progress_update_at(Progress *progress, int done, double now_s)
     double elapsed_s = now_s - progress->updated_s;
     if (elapsed_s > 0.0 && done > progress->done) {
         double rate = (done - progress->done) / elapsed_s;
-        // One pole low pass, exact for any spacing of the updates; the first rate is taken as it
-        // is.
+        // One-pole low-pass filter, exact for any interval between updates. The first rate is taken
+        // unfiltered.
         double weight = progress->rate > 0.0 ? -expm1(-elapsed_s / SMOOTHING_S) : 1.0;
         progress->rate += weight * (rate - progress->rate);
         progress->updated_s = now_s;

@@ -8,7 +8,8 @@
 
 enum { PIECE_BYTES = 8 };
 
-// How the character at `text` is written; `length`: its bytes there. Returns the bytes written.
+// Writes the quoted form of the character at `text`. `length` receives its bytes in the text.
+// Returns the number of bytes written.
 static size_t write_piece(char piece[PIECE_BYTES], const char *text, size_t left, size_t *length)
 {
     static const char NAMED[] = "\nn\rr\tt";
@@ -37,7 +38,7 @@ void quote_line(char *line, size_t size, const char *text)
     static const char DOTS[] = "...";
     size_t all = strlen(text), total = count_bytes(text, all), length, done = 0, used = 0;
     size_t room = size - 1;
-    // What may stand before the dots, and from where on what stands behind them.
+    // The room before the dots, and the offset in the quoted text where the part after them begins.
     bool fits = total <= room;
     size_t before = fits ? total : (room - strlen(DOTS)) / 2,
            behind = fits ? total : total - (room - strlen(DOTS) - before);

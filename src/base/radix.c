@@ -11,7 +11,7 @@ static uint32_t digit_of(uint64_t pair, int pass)
     return (uint32_t)(pair >> (32 + pass * DIGIT_BITS)) & (DIGITS - 1);
 }
 
-// Counts of each digit become the places of its first pair. False if there is only one digit.
+// Turns the counts of the digits into their first places. False if all pairs have the same digit.
 static bool find_places(uint32_t places[DIGITS], size_t count)
 {
     uint32_t at = 0;

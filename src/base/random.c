@@ -12,7 +12,7 @@ static uint64_t mix(uint64_t z)
 
 Random random_create(uint64_t seed, uint64_t stream)
 {
-    // Mixed, so that neighbouring seeds do not give sequences that are shifts of each other.
+    // Mix the seed, because sequences of neighbouring seeds would otherwise be shifted copies.
     return (Random){mix(mix(seed + 0x9e3779b97f4a7c15u) ^ (stream * 0xd1b54a32d192ed03u))};
 }
 
@@ -29,8 +29,8 @@ double random_real(Random *random)
 
 uint32_t random_below(Random *random, uint32_t count)
 {
-    // 2^32 mod count low products would make some results likelier than others: draw again (Lemire
-    // 2019, "Fast random integer generation in an interval").
+    // Draw again for 2^32 mod count low products, which would favour some results (Lemire 2019,
+    // "Fast random integer generation in an interval").
     uint32_t least = (uint32_t)(0u - count) % count;
     uint64_t product;
     do {

@@ -49,7 +49,7 @@ Result reader_fail_memory(Reader *reader)
     return reader->result;
 }
 
-// The next `size` bytes, or NULL after failing.
+// The next `size` bytes, or NULL after an error.
 static const uint8_t *take_bytes(Reader *reader, size_t size, const char *what)
 {
     if (!reader_ok(reader)) return NULL;
@@ -121,7 +121,7 @@ static bool is_blank(uint8_t c)
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-// Bytes of a backslash with the newline behind it, or 0.
+// The length of a backslash and the newline after it, or 0.
 static size_t measure_continuation(const Reader *reader)
 {
     const uint8_t *p = reader->data + reader->at; // zero-terminated: reading two ahead is legal
@@ -178,7 +178,7 @@ void reader_skip_line(Reader *reader)
     reader_next_line(reader);
 }
 
-// Length of the word at the present place, 0 at the end of the line.
+// The length of the word at the reader's place; 0 at the end of the line.
 static size_t measure_word(Reader *reader)
 {
     if (reader_line_ended(reader)) return 0;
@@ -220,7 +220,7 @@ Result reader_fail_expected(Reader *reader, const char *what)
     char word[33] = "";
     for (size_t i = 0; i < length && i < sizeof word - 1; i++) {
         uint8_t c = reader->data[reader->at + i];
-        word[i] = c ? (char)c : '?'; // the message quotes the others
+        word[i] = c ? (char)c : '?'; // the message quotes other control characters
     }
     return reader_fail(reader, "expected %s, got '%s'%s", what, word,
                        length >= sizeof word ? "..." : "");
@@ -244,11 +244,12 @@ uint32_t reader_read_count(Reader *reader, const char *what)
     return (uint32_t)value;
 }
 
-// A decimal number taken apart: (-1)^negative * digits * 10^exponent.
+// A parsed decimal number: (-1)^negative * digits * 10^exponent.
 typedef struct Decimal {
-    uint64_t digits; // the first 19 significant ones
+    uint64_t digits; // the first 19 significant digits
     int exponent;
-    bool negative, cut; // cut: there were more than 19
+    // `cut` is set if there were more than 19 digits.
+    bool negative, cut;
 } Decimal;
 
 static const uint8_t *scan_digits(const uint8_t *p, Decimal *decimal, bool fraction)
@@ -265,8 +266,8 @@ static const uint8_t *scan_digits(const uint8_t *p, Decimal *decimal, bool fract
     return p;
 }
 
-// Returns the byte behind the number at `p` (which must end with a byte that belongs to none), or
-// `p` itself if there is none.
+// Parses the number at `p` and returns the byte after it, or `p` if there is none. The text must
+// end with a byte that cannot be part of a number.
 static const uint8_t *scan_decimal(const uint8_t *p, Decimal *decimal)
 {
     const uint8_t *start = p;
@@ -293,10 +294,11 @@ static const uint8_t *scan_decimal(const uint8_t *p, Decimal *decimal)
     return e;
 }
 
-// Exact shortcut: digits below 2^53 and a power of ten up to 10^22 are doubles, so one
-// multiplication or division rounds correctly to double (Clinger 1990, "How to read floating point
-// numbers accurately"). The second rounding, to float, is wrong only when the double lies exactly
-// half way between two floats, where the first one may have put it: then, and for all else, false.
+// A fast exact conversion. Digits below 2^53 and powers of ten up to 10^22 are exact doubles, so
+// one multiplication or division is correctly rounded (Clinger 1990, "How to read floating point
+// numbers accurately"). Rounding the double to float can only be wrong if the double is exactly the
+// midpoint of two floats, where the first rounding may have put it. Returns false in that case and
+// for all other numbers.
 static bool convert_fast(const Decimal *decimal, float *value)
 {
     static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -313,7 +315,7 @@ static bool convert_fast(const Decimal *decimal, float *value)
     return true;
 }
 
-// "1.#INF" and its kin, or the words of strtof.
+// Parses "1.#INF" and its variants, and the words that strtof accepts.
 static bool convert_special(const uint8_t *word, size_t length, float *value)
 {
     bool negative = length > 0 && word[0] == '-';
@@ -328,7 +330,7 @@ static bool convert_special(const uint8_t *word, size_t length, float *value)
         size_t size = strlen(names[i].word);
         if (length < sign + size) continue;
         if (strncasecmp((const char *)word + sign, names[i].word, size) != 0) continue;
-        // Those libraries fill up with zeros to the digits asked for: -1.#INF00, -1.#IND0.
+        // Some C libraries pad these words with zeros to the requested digits: -1.#INF00, -1.#IND0.
         size_t end = sign + size;
         while (end < length && word[end] == '0' && names[i].word[0] == '1') end++;
         if (end != length) continue;

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// A name is near if the word differs from it by one edit for each three letters, by three at most,
-// or is its beginning.
+// A name is near the word if it differs by at most one edit per three letters and three in all, or
+// if the word is its beginning.
 enum { LONGEST = 63, LETTERS_AN_EDIT = 3, MOST_EDITS = 3, SHORTEST_BEGINNING = 3 };
 
 static int fold(char character)
@@ -27,8 +27,9 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-// Optimal string alignment distance (Damerau 1964): row i of the usual table has the distances of
-// the first i characters of `a` from every beginning of `b`; a swap looks two rows back.
+// Optimal string alignment distance (Damerau 1964). Row i of the usual table holds the distances of
+// the first i characters of `a` from every prefix of `b`; a transposition needs the row before the
+// previous.
 static int distance(const char *a, const char *b)
 {
     int a_length = (int)strnlen(a, LONGEST), b_length = (int)strnlen(b, LONGEST);
@@ -57,7 +58,7 @@ const char *suggest_nearest(const char *word, const char *const *names, size_t c
     for (size_t i = 0; i < count; i++) {
         int edits = distance(word, names[i]);
         bool cut_short = length >= SHORTEST_BEGINNING && begins(names[i], word);
-        // Of two that are as near, the one that was cut short is meant.
+        // If two names are equally near, prefer the one that the user abbreviated.
         int rank = 2 * edits - cut_short;
         if ((edits > most && !cut_short) || rank >= lowest) continue;
         lowest = rank;

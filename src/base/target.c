@@ -39,7 +39,7 @@ static Result take_folder(Target *target, const char *text, Error *error)
     return target->before && target->after ? RESULT_OK : fail_memory(error);
 }
 
-// Reads "d" or "0Nd" behind a percent sign. Returns how many characters, 0 if it is something else.
+// Reads "d" or "0Nd" after a percent sign. Returns its length, 0 if it is something else.
 static int read_conversion(const char *at, int *digits)
 {
     *digits = 1;
@@ -49,8 +49,8 @@ static int read_conversion(const char *at, int *digits)
     return 3;
 }
 
-// `before` and `after` have room for the whole text; "%%" comes out as "%". Returns the count of
-// numbers, -1 for a percent sign that starts no number.
+// Splits the pattern into `before` and `after`, which have room for the whole text; "%%" becomes
+// "%". Returns the number of conversions, or -1 if a percent sign starts none.
 static int split_pattern(Target *target, const char *text)
 {
     int numbers = 0;
@@ -99,7 +99,7 @@ static Result take_one(Target *target, const char *text, TargetFormat format, Er
     return target->before ? RESULT_OK : fail_memory(error);
 }
 
-// "-", "-.png" and the like.
+// Parses "-", "-.png" and similar.
 static Result take_stream(Target *target, const char *text, Error *error)
 {
     static const struct {
@@ -183,7 +183,7 @@ char *target_name_frame(const Target *target, int frame)
     return length < 0 ? NULL : name;
 }
 
-// The part of the pattern behind its folder.
+// The part of the pattern after its folder.
 static const char *find_name(const Target *target)
 {
     const char *slash = strrchr(target->before, '/');
@@ -201,7 +201,7 @@ bool target_read_number(const Target *target, const char *name, int *frame)
     long number = strtol(name + length, &end, 10);
     if (errno || number > 999999999) return false;
     *frame = (int)number;
-    // The name that the number gives must be its own.
+    // Reject names with another number of digits: the number's name must be exactly this one.
     char *path = target_name_frame(target, *frame);
     bool own = path && strcmp(path + (before - target->before), name) == 0;
     free(path);

@@ -23,7 +23,7 @@ static void read_property_value(UsdStage *stage, int prim, void *object, const c
     size_t length = strcspn(name, ".");
     bool samples = strcmp(name + length, ".timeSamples") == 0;
     char word[USD_WORD_SIZE];
-    if (name[length] && !samples) { // .connect
+    if (name[length] && !samples) { // such as .connect
         usd_text_skip_value(reader);
     } else if (strncmp(name, "xformOp:", 8) == 0) {
         snprintf(word, sizeof word, "%.*s", (int)length, name);
@@ -39,7 +39,7 @@ static void read_property_value(UsdStage *stage, int prim, void *object, const c
     }
 }
 
-// (interpolation = "vertex" ...)
+// Reads (interpolation = "vertex" ...).
 static void read_rate(Reader *reader, char rate[16])
 {
     char word[USD_WORD_SIZE];
@@ -60,7 +60,8 @@ static void read_rate(Reader *reader, char rate[16])
     }
 }
 
-// "uniform token[] name = value (metadata)"; the name is the last word.
+// Reads "uniform token[] name = value (metadata)"; the last word before the equals sign is the
+// name.
 static void read_property(UsdStage *stage, int prim, void *object, char name[USD_WORD_SIZE])
 {
     Reader *reader = stage->reader;
@@ -85,7 +86,7 @@ static void read_property(UsdStage *stage, int prim, void *object, char name[USD
 
 // --- Metadata of a prim.
 
-// Whether what comes is None or empty brackets; it is stepped over.
+// Skips a value, and returns whether it was None or empty brackets.
 static bool skip_empty(Reader *reader)
 {
     size_t at = reader->at + 1;
@@ -107,8 +108,8 @@ static bool composes(const char *word)
     return false;
 }
 
-// What the schema wants of customData, whether the prim is active, and what would compose it with
-// others; the rest is ignored.
+// Reads the numbers of customData that the schema asks for, and whether the prim is active. Fails
+// if the prim is composed from others; ignores the rest.
 static void read_metadata(UsdStage *stage, int prim, void *object)
 {
     Reader *reader = stage->reader;
@@ -238,7 +239,8 @@ static void read_layer(UsdStage *stage)
             continue;
         }
         usd_text_read_word(reader, word);
-        if (usd_text_take(reader, '=')) read_layer_value(stage, word); // else "prepend"
+        // Otherwise a list edit such as "prepend"
+        if (usd_text_take(reader, '=')) read_layer_value(stage, word);
     }
 }
 
@@ -279,7 +281,7 @@ void usd_stage_destroy(UsdStage *stage)
     *stage = (UsdStage){0};
 }
 
-// --- What is known of it.
+// --- Queries.
 
 double usd_stage_rate(const UsdStage *stage)
 {

@@ -122,7 +122,7 @@ void usd_text_skip_value(Reader *reader)
     if (depth > 0) reader_fail(reader, "brackets without an end");
 }
 
-// As float32 if `single`, which is rounded once.
+// With `single` the text is rounded directly to float32, not by way of double.
 static double read_number(Reader *reader, bool single)
 {
     char text[USD_WORD_SIZE], *end;
@@ -167,7 +167,7 @@ static bool add_value(Reader *reader, UsdValues *values, float value)
 void usd_text_read_values(Reader *reader, UsdValues *values)
 {
     values->count = 0;
-    if (usd_text_peek(reader, false) != '[') { // None
+    if (usd_text_peek(reader, false) != '[') { // the value is None
         usd_text_skip_value(reader);
         return;
     }
@@ -188,7 +188,7 @@ bool usd_text_next_sample(Reader *reader, double *time)
     if (!reader_ok(reader) || usd_text_take(reader, '}')) return false;
     char text[USD_WORD_SIZE] = "", *end;
     usd_text_peek(reader, false);
-    for (size_t i = 0; i + 1 < sizeof text; ++i) { // the colon might belong to a name
+    for (size_t i = 0; i + 1 < sizeof text; ++i) { // keep the colon: it may be part of a name
         char c = usd_text_here(reader);
         if (!c || strchr(":\n {[", c)) break;
         text[i] = c;

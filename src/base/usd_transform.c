@@ -58,7 +58,7 @@ void usd_transform_read_op(UsdTransform *transform, Reader *reader, const char *
     UsdOp *op = find_op(transform, name);
     if (!op) op = add_op(transform, reader, name);
     if (!op) return;
-    if (op->track.timed && !timed) { // samples win over the default
+    if (op->track.timed && !timed) { // time samples override the default value
         usd_text_skip_value(reader);
         return;
     }
@@ -120,7 +120,7 @@ void usd_transform_multiply(double to[4][4], double a[4][4], double b[4][4])
     memcpy(to, product, sizeof product);
 }
 
-// Gauss and Jordan with the largest pivot. False for a singular matrix.
+// Gauss-Jordan elimination with partial pivoting. False if the matrix is singular.
 static bool invert(double m[4][4])
 {
     double inverse[4][4];
@@ -162,7 +162,7 @@ static void rotate(double m[4][4], int axis, double degrees)
     usd_transform_multiply(m, m, turn);
 }
 
-// w, x, y, z
+// `q` is w, x, y, z.
 static void set_orientation(double m[4][4], const double q[4])
 {
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -202,7 +202,7 @@ static void value_at(const UsdTrack *track, double time, bool orientation, doubl
     if (orientation && share < 1) mix_orientations(value, a, b, share);
 }
 
-// Whether `name`, behind the prefix, is this operation: "translate" or "translate:pivot".
+// Whether `name` (after the prefix) is this operation, such as "translate" or "translate:pivot".
 static bool is_kind(const char *name, const char *kind)
 {
     size_t length = strlen(kind);

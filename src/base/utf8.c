@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// As utf8_length; sets the character's number.
+// Like utf8_length; also sets the code point.
 static size_t decode(const char *text, size_t size, uint32_t *code)
 {
     static const uint32_t LEAST[] = {0, 0, 0x80, 0x800, 0x10000};

@@ -19,7 +19,7 @@ static uint64_t get(const uint8_t *at, int size)
 
 // --- The directory.
 
-// The place of its end record, which a comment may follow; the archive's size if there is none.
+// The offset of the end record, which a comment may follow; the archive's size if there is none.
 static size_t find_end(const Reader *reader)
 {
     for (size_t back = END_SIZE; back <= reader->size && back <= END_SIZE + 65535; back++)
@@ -46,7 +46,8 @@ static void find_directory(Reader *reader, uint64_t *count, uint64_t *at)
     *at = get(reader->data + wide + 48, 8);
 }
 
-// Sizes and place that do not fit 32 bits stand in an extra field, those alone and in this order.
+// Reads sizes and offset from the zip64 extra field. It has only those that do not fit 32 bits, in
+// this order.
 static void read_extra(Reader *reader, ZipFile *file, const uint8_t *extra, size_t size,
                        uint64_t *local)
 {
@@ -67,7 +68,7 @@ static void read_extra(Reader *reader, ZipFile *file, const uint8_t *extra, size
     }
 }
 
-// From the local header, which may have another extra field.
+// Finds the content behind the local header, whose extra field may differ from the directory's.
 static void find_content(Reader *reader, ZipFile *file, uint64_t local)
 {
     if (!reader_check_array(reader, local, 1, LOCAL_SIZE, "a zipped file's header")) return;
@@ -77,7 +78,7 @@ static void find_content(Reader *reader, ZipFile *file, uint64_t local)
     reader_check_array(reader, file->at, file->packed, 1, "a zipped file's bytes");
 }
 
-// The entry at the reader's place; the reader goes behind it.
+// Reads the directory entry at the reader's place and moves behind it.
 static void read_entry(Reader *reader, ZipFile *file)
 {
     if (!reader_check_array(reader, reader->at, 1, CENTRAL_SIZE, "the zip directory")) return;
@@ -189,7 +190,7 @@ static uint8_t *put(uint8_t *at, uint64_t value, int size)
     return at;
 }
 
-// What a local header and an entry of the directory have in common: from the version on.
+// Writes the fields that a local header and a directory entry share, from the version on.
 static uint8_t *put_shared(uint8_t *at, uint32_t crc, uint64_t size, size_t name)
 {
     const uint32_t version = 20, date = 1 << 5 | 1; // 1980-01-01
