@@ -63,7 +63,8 @@ LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) $(filter -L% -l
 # --- Files, in the rooms of src/, glsl/ and tests/. Every src/<room>/main_<x>.c is the program tractrix-<x>, every
 # tests/<room>/test_<x>.c a program of its own; the tests share tests/support/.
 MAINS     := $(wildcard src/*/main_*.c)
-SOURCES   := $(filter-out $(MAINS),$(wildcard src/*/*.c src/*/*/*.c))
+STAND_IN  := src/mesh/write_stand_in.c # a tool of the build
+SOURCES   := $(filter-out $(MAINS) $(STAND_IN),$(wildcard src/*/*.c src/*/*/*.c))
 BENCH_SHADERS := $(wildcard glsl/bench/*)
 SHADERS   := $(filter-out $(BENCH_SHADERS),$(wildcard glsl/*/*))
 TESTS     := $(wildcard tests/*/test_*.c)
@@ -73,7 +74,7 @@ SUPPORT   := $(filter-out $(KEEP),$(wildcard tests/support/*.c))
 FUZZ      := $(filter-out tests/fuzz/test_% tests/fuzz/engine.c,$(wildcard tests/fuzz/*.c))
 PAGES     := $(filter %.html %.css %.js,$(wildcard src/report/*))
 OBJECTS   := $(SOURCES:src/%.c=$(OUT)/%.o) $(if $(SHADERS),$(OUT)/glsl_sources.o) $(if $(BENCH_SHADERS),$(OUT)/bench/bench_glsl.o) \
-             $(OUT)/report/report_texts.o
+             $(OUT)/report/report_texts.o $(OUT)/mesh/stand_in_table.o
 PROGRAMS  := $(foreach main,$(MAINS),$(OUT)/$(patsubst main_%.c,tractrix-%,$(notdir $(main))))
 TEST_PROGRAMS := $(TESTS:%.c=$(OUT)/%)
 SUPPORT_OBJECTS := $(SUPPORT:%.c=$(OUT)/%.o) $(OUT)/tests/glsl_sources.o
@@ -125,6 +126,12 @@ $(OUT)/report/report_texts.c: scripts/embed-text $(PAGES) $(OUT)/files
 	$(call run,EMBED,scripts/embed-text report/report.h 'ReportText*' REPORT_TEXTS src/report/ $(PAGES) >$@.tmp && mv $@.tmp $@)
 $(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o: %.o: %.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
+$(OUT)/mesh/stand_in_table.c: $(OUT)/mesh/write_stand_in
+	$(call run,MAKE,$< >$@.tmp && mv $@.tmp $@)
+$(OUT)/mesh/write_stand_in: $(addprefix $(OUT)/,mesh/write_stand_in.o $(addprefix mesh/,head.o simplify.o surface_net.o mesh.o) base/error.o base/quote.o base/utf8.o) $(KEEP_$(CONFIG))
+	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ -lm $(LDLIBS))
+$(OUT)/mesh/stand_in_table.o: %.o: %.c $(OUT)/flags
+	$(call run,CC,$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<)
 $(OUT)/image/jpeg.o: C_FLAGS += -fno-sanitize=shift # stb_image_write shifts bits beyond an int on purpose
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))

@@ -401,7 +401,7 @@ Result head_make_mesh(Mesh *mesh, uint32_t triangle_count, Error *error)
         surface_net_project(&net, place);
         for (int i = 0; i < 3; i++) mesh->position[v][i] = (float)place[i];
     }
-    round_numbers(mesh->position[0], 3 * (size_t)mesh->vertex_count, 1e-5);
+    round_numbers(mesh->position[0], 3 * (size_t)mesh->vertex_count, HEAD_UNIT);
     mesh_compute_normals(mesh);
     return add_uv(mesh, error);
 }

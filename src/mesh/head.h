@@ -31,6 +31,8 @@ void head_normal(const Double3 at, Double3 normal);
 #define HEAD_NORMAL_REACH 1e-5
 void head_patch_normal(const HeadPatch *patch, const Double3 at, Double3 normal);
 
+#define HEAD_UNIT 1e-5 // m: the mesh's coordinates are multiples of it
+
 // A closed mesh of at most `triangle_count` triangles, or as few as keep it whole. Vertices lie on
 // the surface to 0.01 mm; texture coordinates are longitude (0.5 in front, the seam at the back)
 // and latitude (1 on top) about the origin. RESULT_FAILED when memory is short.

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scalp_guess.h"
 
-#include "mesh/scalp.h"
+#include "mesh/stand_in.h"
 #include "strands/scalp_fit.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { RINGS = 32 };
 static const double UNLIKE = 1.4;  // times a head's width: another unit, perhaps
 static const double LONGER = 1.02; // axes that need a capsule besides the sphere
 
@@ -17,7 +16,7 @@ static const double HEAD_CENTRE[3] = {0, 0.0155, -0.013}, HEAD_RADIUS[3] = {0.07
 // The bundled head, its face towards +z, stretched so that its scalp is the fitted one.
 static Result make_mesh(Mesh *mesh, const ScalpFit *fit, Error *error)
 {
-    TRY(scalp_make_mesh(mesh, SCALP_HEAD, RINGS, error));
+    TRY(stand_in_make_mesh(mesh, error));
     for (uint32_t v = 0; v < mesh->vertex_count; ++v)
         for (int k = 0; k < 3; ++k)
             mesh->position[v][k] =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The mannequin's head: its distance, its mesh.
 #include "mesh/head.h"
+#include "mesh/stand_in.h"
 #include "mesh/surface.h"
 
 #include <setjmp.h>
@@ -135,6 +136,22 @@ static void the_head_is_well_proportioned(void **state)
     assert_true(reach(neck, right) < 0.85 * 0.5 * width);
 }
 
+// The numbers that the build wrote into the programs are those that the head's own formulas give.
+static void the_stand_in_is_the_head(void **state)
+{
+    (void)state;
+    Mesh made, kept;
+    assert_int_equal(head_make_mesh(&made, STAND_IN_TRIANGLES, NULL), RESULT_OK);
+    assert_int_equal(stand_in_make_mesh(&kept, NULL), RESULT_OK);
+    assert_int_equal(kept.vertex_count, made.vertex_count);
+    assert_int_equal(kept.triangle_count, made.triangle_count);
+    assert_memory_equal(kept.position, made.position, made.vertex_count * sizeof *made.position);
+    assert_memory_equal(kept.normal, made.normal, made.vertex_count * sizeof *made.normal);
+    assert_memory_equal(kept.triangle, made.triangle, made.triangle_count * sizeof *made.triangle);
+    mesh_destroy(&made);
+    mesh_destroy(&kept);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -142,6 +159,7 @@ int main(void)
         cmocka_unit_test(vertices_lie_on_the_surface),
         cmocka_unit_test(left_and_right_are_alike),
         cmocka_unit_test(the_head_is_well_proportioned),
+        cmocka_unit_test(the_stand_in_is_the_head),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
