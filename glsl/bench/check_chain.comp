@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pulls chains along waypoints as the solvers do: unit directions and lengths are the state,
-// positions are summed up at the end. A lane takes a case; `spans` holds for each its first point,
-// segments, first waypoint, waypoints.
+// Pulls chains along waypoints as the solvers do: the state consists of unit directions and
+// lengths; positions are summed up at the end. A lane for each case; `spans` has the case's first
+// point, segments, first waypoint and number of waypoints.
 #include "common/shared.h"
 #include "sim/tractrix.glsl"
 
@@ -10,7 +10,7 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(std430, binding = BIND_STATE_OUT) readonly buffer Spans { uvec4 spans[]; };
 layout(std430, binding = BIND_TIPS) readonly buffer Waypoints { vec4 waypoints[]; };
-// In: start, out: result.
+// Input: start points; output: results.
 layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; };
 
 void main()

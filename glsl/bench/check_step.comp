@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs tractrix_step, or with PUBLISHED 1 the thesis's, on test vectors: three vec4 a case in
-// (head, tail, the head's target), the new tail out.
+// Runs tractrix_step or, with PUBLISHED 1, the thesis's version on test vectors. A case has three
+// vec4 as input (head, tail, the head's target); the output is the new tail.
 #include "common/shared.h"
 #include "sim/tractrix.glsl"
 #include "bench/tractrix_published.glsl"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Whether strands still behave after a step (stress_bound.h has the rules and their derivation). A
-// strand a lane.
+// Checks whether strands keep the rules after a step (stress_bound.h has the rules and their
+// derivation). A lane for each strand.
 //
-// Energy is a particle's mean, mass 1, in the frame that goes with the root without turning; x and
-// v belong to the middle of the step:
-//     E = mean(v.v/2 - g.(x - s)),   s: where it began.   B = mean(|g| l - g.s)
-//         bounds g.(x - s) at l along the strand.
-// TIP 1: the strand is one particle, its tip, with a velocity of its own (split).
+// Energy is the mean over particles of mass 1, in the frame that moves with the root without
+// rotating; x and v belong to the middle of the step:
+//     E = mean(v.v/2 - g.(x - s)), where s is the place of a particle at the start.
+//     B = mean(|g| l - g.s), where l is the distance along the strand, bounds mean(g.(x - s)).
+// TIP 1: the strand is a single particle, its tip, with a velocity of its own (split).
 #include "bench/stress_params.h"
 #include "common/hair_address.glsl"
 
@@ -25,7 +25,7 @@ const float HUGE = 1e30;
 
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// Written so that a NaN does not pass.
+// Written so that a NaN fails.
 bool passes(float value) { return value <= stress_params.used_most; }
 
 void main()
@@ -41,7 +41,8 @@ void main()
     float along = 0.0, short_by = 0.0, lifted = 0.0, shortest = HUGE, highest = 0.0, kinetic = 0.0,
           potential = 0.0, budget = 0.0, began = 0.0, size = largest(root), off = 0.0, move = 0.0;
     bool finite = size < HUGE;
-    vec4 lead = texelFetch(rest, base + STRAND_TILE); // what the head carries, if it does
+    // Vertex 1, which the head carries if `carried` is 1.
+    vec4 lead = texelFetch(rest, base + STRAND_TILE);
     float raised = stress_params.carried * (strength * lead.w + lead.w * dot(g, lead.xyz));
     for (int j = 1; j < n; ++j) {
         int a = base + j * STRAND_TILE;

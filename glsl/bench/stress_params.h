@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stress.comp is given.
+// Inputs of stress.comp.
 #include "common/shared.h"
 
 // Buffer texture: positions before the step.
@@ -15,30 +15,30 @@
 
 UNIFORM_BLOCK(StressParams, stress_params, BIND_STEP)
 {
-    vec4 gravity;       // xyz, m/s^2: what is felt in this step
-    vec4 gravity_first; // xyz, m/s^2: in the first one
-    float strongest;    // m/s^2: the most that was felt so far
-    float changes;      // m/s^2: all changes of what is felt so far
-    float hangs;        // 1: the strand began hanging straight down, behind what the head carries
+    vec4 gravity;       // xyz, m/s^2: gravity that acts on the strand in this step
+    vec4 gravity_first; // xyz, m/s^2: the same in the first step
+    float strongest;    // m/s^2: largest such gravity so far
+    float changes;      // m/s^2: sum of all changes of it so far
+    float hangs;        // 1: the strand, except for carried vertices, began hanging straight down
     float per_dt;       // 1/s
-    float kicks;        // m/s: all changes of the root's velocity so far
-    float spun;         // 1/s: as kicks, of vertex 1 about the root, over their distance; where the
-                        // head carries it, else 0
-    float carried;      // 1: it does
-    float added;        // m^2/s^2: what wind and the turning style may have added, twice the energy
-    float rise;         // share of this and of mean(|g| l) by which energy may rise
-    float rounding;     // of a coordinate's size: error of a stored length or move
-    float bends;        // m^2/s^2: bends by a radian add this to twice the energy
-    float resolved;     // roundings that all segments must be long for energy to be looked at
-    float noise_steps;  // steps whose rounding may add up in velocities
-    float length_error; // allowed, of a segment's length; 0: not looked at
-    float rest_shortest; // m: strands with a segment as short need not rest
-    float rest_resolved; // roundings: nor those with one as short as this
-    float flutter;       // load over stiffness if all of the weight presses the strand together
-    float most_flutter;  // above it, times the share that does, only lengths are looked at
-    float rest_move;     // m: allowed in this step; 0: not looked at
-    float used_most;     // share of what is allowed, above 0 to 1, that keeps a rule
-    uint energy;         // whether it is looked at
+    float kicks;        // m/s: sum of all changes of the root's velocity so far
+    float spun; // 1/s: changes of velocity of vertex 1 about the root over their distance, if the
+                // head carries vertex 1; otherwise 0
+    float carried;     // 1: the head carries vertex 1
+    float added;       // m^2/s^2: twice the energy that wind and a turning style may have added
+    float rise;        // share of its bound and of mean(|g| l) by which energy may exceed the bound
+    float rounding;    // error of a stored length or move, over a coordinate's size
+    float bends;       // m^2/s^2: added to twice the energy by bending of one radian
+    float resolved;    // energy is checked if segments are longer than this many roundings
+    float noise_steps; // steps whose rounding errors may add up in velocities
+    float length_error;  // allowed error of a segment's length; 0: not checked
+    float rest_shortest; // m: strands with a segment as short as this need not rest
+    float rest_resolved; // roundings: nor strands with a segment as short as this
+    float flutter;       // load over stiffness if all weight compresses the strand
+    float most_flutter; // above this (flutter times the compressing share) only lengths are checked
+    float rest_move;    // m: allowed move in this step; 0: not checked
+    float used_most;    // share of the allowed value up to which a rule is kept
+    uint energy;        // whether energy is checked
     uint step;
     uint strand_count;
     uint vertex_count;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The tractrix step as the thesis published it, to be measured beside ours: the recipe of
-// Sreenivasan, Goel and Ghosal (Mechanism and Machine Theory 45, 2010) in the plane of the move,
-// with the thesis's own guards. Nothing else uses it.
+// The tractrix step as published in the thesis, to compare it with ours: the recipe of Sreenivasan,
+// Goel and Ghosal (Mechanism and Machine Theory 45, 2010) in the plane of the move, with the
+// thesis's own guards. Nothing else uses it.
 //
-// x along the move from the old head, y across it towards the tail. From the tail's distance y to
-// the line comes the parameter p = L asech(y/L), and the tail ends at x = s - L tanh((p + s)/L), y
-// = L sech((p + s)/L) when it is towed. When it is pushed, p - s, and x = s + L tanh((p - s)/L). As
-// published, "towed" means that the tail is farther from the head's target than from the head,
-// which is wrong for a pushed tail that the head passes (s > 2 a L); p + s is bounded by 100
-// metres, whatever the scale; a tail that would move farther than the head goes by s towards the
-// head, in segments (not metres); a move along the segment translates it.
+// x runs along the move from the old head, y across it towards the tail. The tail's distance y to
+// the line gives the parameter p = L asech(y/L). A towed tail ends at x = s - L tanh((p + s)/L), y
+// = L sech((p + s)/L). A pushed tail has p - s, and x = s + L tanh((p - s)/L). As published,
+// "towed" means that the tail is farther from the head's target than from the head, which is wrong
+// for a pushed tail that the head passes (s > 2 a L); p + s is limited to 100 metres, whatever the
+// scale; a tail that would move farther than the head moves by s towards the head, in segments (not
+// metres); a move along the segment translates it.
 
 float published_asech(float u) { return log((1.0 + sqrt(1.0 - u * u)) / u); }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The A-buffer: every fragment of a pixel in a linked list (Yang et al. 2010).
+// The A-buffer: a linked list of all fragments for each pixel (Yang et al. 2010).
 //
-// A node is: number of the next node + 1 or 0, depth, colour. The depth is 1/w as float bits, which
-// as an int grows towards the eye. The colour is linear RGB times alpha and alpha, as four halves.
+// A node has the number of the next node + 1 (0 at the end), the depth and the colour. The depth is
+// 1/w as float bits, which as an integer grows towards the eye. The colour is linear RGB times
+// alpha, and alpha, as four halves.
 //
-// Atomics order a list differently in every run. So readers sort by (depth, colour). Two nodes that
-// are equal in both can be exchanged, so the picture depends only on which nodes there are.
+// Atomic operations order a list differently in every run, so readers sort by (depth, colour).
+// Nodes that are equal in both are interchangeable, so the picture depends only on the set of
+// nodes.
 
 ivec3 abuffer_pack(float inverse_w, vec3 color, float alpha)
 {

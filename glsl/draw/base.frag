@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Joins mesh, floor and background: each of a pixel's samples of the mesh lies before or behind the
-// floor, and all over the background.
+// Joins mesh, floor and background. Each of a pixel's samples of the mesh lies in front of the
+// floor or behind it; both lie over the background.
 //   MESH 1: there may be mesh in the pixel   EDGE_SAMPLES: samples of its depth
-//   FLOOR: see floor_light.glsl; 0: none
+//   FLOOR: see floor_light.glsl; 0: no floor
 #include "draw/draw.h"
 #include "draw/ray.glsl"
 #include "kernel/edge.h"
 #if FLOOR
-#define MESH_TAPS 6 // as soft as shadows of hair, whose maps are coarser
+#define MESH_TAPS 6 // as soft as the shadows of hair, whose maps are coarser
 #include "draw/lights.glsl"
 #include "draw/shadow_surface.glsl"
 #include "draw/floor_light.glsl"
@@ -20,7 +20,8 @@ layout(binding = BIND_EDGE_DEPTH) uniform sampler2DMS edge_depth;
 #endif
 layout(location = 0) out vec4 base; // linear, premultiplied
 
-float depth = EDGE_NOWHERE, floor_depth = EDGE_NOWHERE; // what hides hair; the floor's
+// The depth that hides hair, and the floor's depth.
+float depth = EDGE_NOWHERE, floor_depth = EDGE_NOWHERE;
 vec4 front = vec4(0.0), behind = vec4(0.0); // sums of all samples on either side of the floor
 
 #if MESH
@@ -50,7 +51,7 @@ void add_samples(ivec2 at, vec4 background)
         color[i] = z[i] < EDGE_NOWHERE ? own : background;
         off[i] = edge_off(z[i], middle);
     }
-    int neighbours = edge ? 9 : 0; // none cost nothing (see shadow_surface.glsl)
+    int neighbours = edge ? 9 : 0; // a loop without turns costs nothing (see shadow_surface.glsl)
     for (int n = 0; n < neighbours; ++n) {
         ivec2 last = ivec2(draw_params.width, draw_params.height) - 1,
               there = clamp(at + ivec2(n % 3, n / 3) - 1, ivec2(0), last);

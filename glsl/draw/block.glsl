@@ -10,17 +10,16 @@
 //      (first | last << 16), px; the strip's middle moves by `slope` from row to row and it reaches
 //      so far to either side
 //
-// Along the strand a ribbon has the share of a pixel that lies beyond its first end less the share
-// beyond its last one. At a joint both ribbons have the same share, so that they cover all of the
-// pixel together: beyond the joint lies what is on the positive side of its bound, the sum of both
-// ribbons' directions, which is square to the mitre; a whole pixel by its middle, since two halves
-// of a pixel that are laid over each other would cover less than the pixel. At a free end, and
-// where a strand folds back, the bound is the ribbon's own direction, and the share is exact for
-// ribbons along an axis: it grows evenly over the pixel's width. The bound's length tells which it
-// is.
+// At an end, a ribbon's share of a pixel is the share beyond its first end minus the share beyond
+// its last end. At a joint both ribbons use the same share, so together they cover the whole pixel.
+// The part beyond a joint is the positive side of its bound, which is the sum of both directions
+// and perpendicular to the mitre. A whole pixel counts there, by its centre, because two blended
+// halves of a pixel would cover less than the pixel. At a free end, and where a strand folds back,
+// the bound is the ribbon's own direction, and the share is exact for ribbons along an axis: it
+// grows linearly over the pixel's width. The length of the bound tells the two cases apart.
 
-// Two numbers share a word: levels, which are not negative (shared_math.h), or shorts, a float's
-// upper half.
+// Two numbers share a word. They are either levels, which are not negative (shared_math.h), or
+// shorts, the upper half of a float.
 #include "kernel/ribbon.h"
 
 uint pack_levels(vec2 v) { return pack_level(v.x) | (pack_level(v.y) << 16); }
@@ -31,7 +30,7 @@ uint pack_shorts(RibbonBound bound)
     return (bits.x >> 16) | (bits.y & 0xffff0000u);
 }
 
-// How opacity and the change of 1/w share a word.
+// Opacity and the change of 1/w share a word.
 uint pack_depth(float opacity, float change)
 {
     return uint(int(clamp(opacity, 0.0, 1.0) * 4095.0 + 0.5)) |

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The depth from which on hair is hidden, for each tile of the picture: 1/w of the farthest opaque
+// For each tile of the picture, the depth behind which hair is hidden: 1/w of the farthest opaque
 // surface in the tile, 0 if the background shows.
 #include "draw/draw.h"
 #include "kernel/edge.h"

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The depth from which on hair is hidden, for each tile of one level: the least value of
+// For each tile of one level, the depth behind which hair is hidden: the least value of
 // block_hide.comp in the tile and in the eight tiles around it. At level k a tile covers 2^k x 2^k
 // tiles of the first level. Also stores the least value of the tile itself, for the next level.
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(location = 0) uniform ivec2 tiles; // of level 0: columns, rows
+layout(location = 0) uniform ivec2 tiles; // columns, rows of level 0
 layout(location = 1) uniform int level;
-layout(std430, binding = BIND_HIDING_OUT) buffer Nearest
-{
-    float nearest[];
-}; // a level after another
+layout(std430, binding = BIND_HIDING_OUT) buffer Nearest { float nearest[]; }; // level by level
 layout(std430, binding = BIND_LEVELS_OUT) writeonly buffer Levels { float levels[]; };
 
 int address(int of_level, ivec2 tile) { return (of_level * tiles.y + tile.y) * tiles.x + tile.x; }
 
-// The least of the tiles from `low` to `high`, those beyond the picture left out.
+// The least value of the tiles from `low` to `high`. Tiles outside the picture are left out.
 float least(ivec2 low, ivec2 high, ivec2 count)
 {
     low = max(low, ivec2(0)), high = min(high, count - 1);

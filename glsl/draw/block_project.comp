@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: MIT
 // Projects and shades strands, one for each lane. Writes records of ribbons with their spans
-// (block.glsl), and their depths as keys. Particles are left out where the ribbon is straight, and
-// ribbons if they miss the picture. A ribbon's slot is fixed by its strand, so that nothing depends
-// on the order of lanes. Slots without a ribbon keep the key 0.
-#define WALK_BEYOND 2 // they end the tip's ribbon
+// (block.glsl), and their depths as keys. Particles are left out where the ribbon is straight;
+// ribbons outside the picture are left out. A strand determines the slots of its ribbons, so
+// nothing depends on the order of lanes. Slots without a ribbon keep the key 0.
+#define WALK_BEYOND 2 // additional turns, which end the tip's ribbon
 #include "draw/ribbon_walk.glsl"
 #include "draw/block.glsl"
 
-const float SLANT = 0.004; // of 1/w, by which a ribbon's ends may be apart
+const float SLANT = 0.004; // a ribbon's ends may differ by this share of 1/w
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-// Of this part of a batch, in what is bound of the buffers.
+// The first slot of this part of a batch, in the bound range of the buffers.
 layout(location = 0) uniform int first_slot;
-// How many; 1: they are those of the list (block_cull.comp)
+// The number of strands; y = 1: strands of the list (block_cull.comp)
 layout(location = 1) uniform ivec2 strands;
 layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
 layout(std430, binding = BIND_RIBBONS_OUT) writeonly buffer Ribbons { uvec4 ribbons[]; };
-// The depth's bits of each ribbon; 0: none.
+// The bits of each ribbon's depth; 0: no ribbon.
 layout(std430, binding = BIND_KEYS_OUT) writeonly buffer Keys { uint keys[]; };
 layout(std430, binding = BIND_BLOCK_COUNTS_OUT) buffer Counts { uint counts[]; };
 
-// A ribbon's end as its record has it.
+// A ribbon's end, as its record stores it.
 struct End {
     vec2 at;
     float inverse_w, half_width;
-    RibbonBound bound, bound_before; // of the ribbon that begins here, of the one that ends here
+    RibbonBound bound, bound_before; // of the ribbon that begins here; of the one that ends here
     vec3 color;
 };
 
@@ -37,7 +37,7 @@ End make_end(Particle p, vec2 d0, vec2 d1)
                ribbon_bound(d1.x, d1.y, d0.x, d0.y), ribbon_bound(d0.x, d0.y, d1.x, d1.y), p.color);
 }
 
-// Which pixels' middles are in reach.
+// The pixels whose centres the ribbon can reach.
 Span find_span(End a, End b, vec2 d, float reach, out bool seen)
 {
     vec2 p = a.at - d * ribbon_overhang(a.bound, d.x, d.y, reach),
@@ -50,7 +50,7 @@ Span find_span(End a, End b, vec2 d, float reach, out bool seen)
     return Span(d.x * (d.y < 0.0 ? -rows : rows), reach * rows, ivec4(low, max(high, 0.0)));
 }
 
-// Whether the ribbon was kept.
+// Stores a ribbon. False if it misses the picture.
 bool store(int slot, End a, End b, float opacity)
 {
     vec2 way = b.at - a.at;
@@ -75,17 +75,17 @@ bool store(int slot, End a, End b, float opacity)
     return seen;
 }
 
-int slot = 0;  // of the strand's first ribbon
-int count = 0; // of its ribbons so far
-// Of the ribbon that is not stored yet.
+int slot = 0;  // slot of the strand's first ribbon
+int count = 0; // its ribbons so far
+// The first end of the ribbon that is not stored yet.
 End end =
     End(vec2(0.0), 0.0, 0.0, RibbonBound(0.0, 0.0, 0.0), RibbonBound(0.0, 0.0, 0.0), vec3(0.0));
 bool begun = false;
 
 void see_point(Particle p) {}
 
-// Ribbons are drawn in the order of their middles' depths: one that reaches far into hair would lie
-// over what is before its end.
+// A ribbon is sorted by the depth of its middle. A ribbon that reaches far into the hair would
+// cover hair that is in front of its far end, so ribbons end early if their depth changes.
 bool ends_ribbon(Walk w, int j, Particle p)
 {
     bool slants = abs(p.at.inverse_w - w.kept.at.inverse_w) > SLANT * p.at.inverse_w;

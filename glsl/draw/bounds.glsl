@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A float's bits as an int that grows with it, which atomics can compare: of positive floats they
-// do, of negative ones they fall.
+// Maps a float to an integer with the same order, for atomic minimum and maximum. The bits of
+// positive floats already have this order; those of negative floats have the opposite order.
 int ordered(float x)
 {
     int bits = floatBitsToInt(x);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes the pixels of tiles without ribbons, one for each lane: they show only what lies behind
-// the hair.
+// Writes the pixels of tiles without ribbons, one for each lane: they show what lies behind the
+// hair.
 //   DEPTH 1: they show the mesh's distance instead; needs SAMPLES 1
 //   BASE, SAMPLES, KIND, TONE: see compute_pixels.glsl
 #include "draw/draw.h"
@@ -9,9 +9,8 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(location = 0) uniform int columns; // of tiles
-layout(
-    location = 1) uniform ivec3 rows; // px of the picture: its width; the band's first row, the end
+layout(location = 0) uniform int columns; // columns of tiles
+layout(location = 1) uniform ivec3 rows;  // px: the picture's width; the band's first row; its end
 layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
 
 void main()

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Composites a tile of pixels a work group, of the tiles with ribbons: its list's ribbons near to
-// far, each under what stands before it, premultiplied and in linear light, over what stands
-// behind, to colours. The arithmetic is that of src/lanes/composite.c and pixels.c.
-//   PIXELS 1, 4: of a lane, one above the other; GROUP_SIZE: lanes, for a tile
-//   STAGED 1: ribbons are unpacked once, into shared memory   0: by every lane for itself
-//   BASE 1: mesh or floor hide what is behind them; see compute_pixels.glsl, too
-//   NEAREST 1: a ribbon hides all behind it where it covers RIBBON_LEAST_COVERAGE of the pixel
-//   DEPTH 1: and shows its distance
+// Composites tiles that have ribbons, one for each work group. The ribbons of the tile's list are
+// blended from near to far, each behind the ones before it, premultiplied and in linear light. The
+// result lies over the base or background and is converted to colours. The arithmetic is that of
+// src/lanes/composite.c and pixels.c.
+//   PIXELS 1, 4: pixels of a lane, one above the other; GROUP_SIZE: lanes of a tile
+//   STAGED 1: ribbons are unpacked once, to shared memory   0: each lane unpacks them itself
+//   BASE 1: mesh or floor hide ribbons behind them; see also compute_pixels.glsl
+//   NEAREST 1: a ribbon that covers RIBBON_LEAST_COVERAGE of a pixel hides everything behind it
+//   DEPTH 1: the pixel shows the nearest ribbon's distance
 //   SAMPLES, KIND, TONE: see compute_pixels.glsl
 //
-// Ribbons are taken BATCH at a time: lanes find the cells that each of them touches, a bit a ribbon
-// in the cell's mask, then each cell's lanes go through their mask from its lowest bit on. So bits
-// may be set in any order. A cell is left out once less than RIBBON_LEAST_THROUGH is seen through
-// all its pixels.
+// The work group takes BATCH ribbons at a time. Its lanes find the cells that each ribbon touches
+// and set a bit for the ribbon in the cell's mask. Then each cell's lanes go through the mask from
+// its lowest bit. So the order in which bits are set does not matter. A cell is skipped once less
+// than RIBBON_LEAST_THROUGH is visible through each of its pixels.
 #if PIXELS == 4
 #define REAL vec4
 #else
@@ -36,7 +37,7 @@ layout(std430, binding = BIND_TILE_ENDS_OUT) readonly buffer Ends { uint ends[];
 layout(std430, binding = BIND_TILE_USE_OUT) readonly buffer Use { uint use[TILE_USE_WORDS]; };
 layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; };
 
-// Some number of each of a lane's pixels.
+// A number for each of a lane's pixels.
 #define Numbers REAL
 #if PIXELS == 4
 #define OF(v, k)   v[k]
@@ -51,25 +52,27 @@ layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; }
 const int CELLS_ACROSS = TILE_SIDE / TILE_CELL_WIDTH, // 2
     CELLS = CELLS_ACROSS * (TILE_SIDE / TILE_CELL_HEIGHT), BATCH = 128, WORDS = BATCH / 32;
 
-// Those of this batch and of the next one, in turn.
+// Masks of this batch and of the next one, in turn.
 shared uint masks[2 * CELLS * WORDS];
-shared int open_from[CELLS]; // the batch that the cell is open for
+shared int open_from[CELLS]; // the batch for which the cell is open
 
 uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
 int tile = int(tiles[min(group, max(use[TILE_USE_TILES], 1u) - 1u)]);
 ivec2 corner = ivec2(tile % tile_columns, tile / tile_columns) * TILE_SIDE;
-// The middle of the first pixel of the block that the tile is part of, as C counts pixels.
+// The centre of the first pixel of the block that contains the tile; src/lanes counts pixels from
+// there.
 ivec2 block = corner / ivec2(BLOCK_WIDTH, BLOCK_HEIGHT) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
 vec2 origin = vec2(block) + 0.5;
 
 // --- Ribbons.
 
 struct Ribbon {
-    // Distance from the middle line, share of the length, share of a pixel that the first end and
-    // that the last one leaves it: in the block's first pixel, by column, by row.
+    // at, by_x, by_y: linear functions, at the block's first pixel and per column and row: distance
+    // from the middle line, share of the length, share of a pixel that the first end and the last
+    // end do not cut off.
     vec4 at, by_x, by_y;
-    vec4 width; // px: half-width at the first end, how much more at the last; inner, outer
-    vec4 cover; // factor and curve, see coverage; 1/w at the first end, how much more at the last
+    vec4 width; // px: half-width at the first end, its change to the last; inner, outer
+    vec4 cover; // factor, curve (RibbonProfile); 1/w at the first end, its change to the last
     vec3 first, change; // colour
 };
 
@@ -133,14 +136,14 @@ Ribbon fetch_ribbon(int begin, int i)
 #endif
 }
 
-// The cells that the ribbon may touch, a bit each.
+// The cells that the ribbon may touch, one bit each.
 uint find_cells(Strip s)
 {
     uint cells = 0u;
     for (int row = 0; row < CELLS / CELLS_ACROSS; ++row) {
         int top = corner.y + row * TILE_CELL_HEIGHT, first = max(top, s.rows.x),
             last = min(top + TILE_CELL_HEIGHT - 1, s.rows.y);
-        // From the tile's left side on; halves of the tile.
+        // Columns from the tile's left side; the tile has two halves.
         ivec2 columns = strip_columns(s, first, last) - corner.x;
         uint left = uint(columns.x < TILE_CELL_WIDTH && columns.y >= 0),
              right = uint(columns.x < TILE_SIDE && columns.y >= TILE_CELL_WIDTH);
@@ -150,7 +153,7 @@ uint find_cells(Strip s)
     return cells;
 }
 
-// Lane i of the group lists ribbons i, i + GROUP_SIZE, ... of the batch in the cells that are open.
+// Lane i of the group enters ribbons i, i + GROUP_SIZE, ... of the batch in the open cells.
 void list_batch(int begin, int count, int batch, uint open)
 {
     int lane = int(gl_LocalInvocationID.x);
@@ -171,10 +174,10 @@ void list_batch(int begin, int count, int batch, uint open)
 
 // --- Pixels.
 
-ivec2 place = ivec2(0); // of the lane's first one
+ivec2 place = ivec2(0); // the lane's first pixel
 Numbers red = Numbers(0.0), green = Numbers(0.0), blue = Numbers(0.0);
-Numbers through = Numbers(1.0); // share of what stands behind that is seen
-Numbers hidden = Numbers(0.0);  // 1/w of what hides all behind it; 0: nothing
+Numbers through = Numbers(1.0); // transmittance so far
+Numbers hidden = Numbers(0.0);  // 1/w of the opaque surface; 0: none
 
 Numbers profile_area(Ribbon r, Numbers t)
 {
@@ -247,7 +250,7 @@ void draw_list(int begin, int count)
     }
 }
 
-// --- What stands behind, and colours.
+// --- The base behind, and colours.
 
 void hide()
 {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Sorts ribbons into the tiles that they touch, a slot for each lane: first counts them, then lists
-// them. The order of pairs in a tile depends on chance; compute_sort.comp sorts them.
+// Puts ribbons into the lists of the tiles that they touch, a slot for each lane: first counts
+// them, then lists them. The order of a tile's pairs is not fixed; compute_sort.comp sorts them.
 //   FILL 0: counts   1: lists
 #include "draw/draw.h"
 #include "draw/compute_strip.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(location = 0) uniform ivec3 band; // columns of tiles; the first of its rows, the end
+layout(location = 0) uniform ivec3 band; // columns of tiles; first row; end row
 layout(location = 1) uniform int slots;
 layout(location = 2) uniform uint room; // pairs
 layout(binding = BIND_RIBBONS) uniform usamplerBuffer ribbons;

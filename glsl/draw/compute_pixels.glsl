@@ -36,7 +36,7 @@ vec4 light_behind(ivec2 p)
     return light;
 }
 
-// The inverse distance of the mesh, 0: none.
+// The inverse distance of the mesh; 0 without mesh.
 float inverse_distance_behind(ivec2 p)
 {
     float z = EDGE_NOWHERE;
@@ -46,7 +46,7 @@ float inverse_distance_behind(ivec2 p)
     return edge_inverse_w(z, draw_params.depth.x, draw_params.depth.y);
 }
 
-// Levels are found here: drivers may round in another way.
+// Rounds to levels here, because drivers may round differently.
 void store(ivec2 p, vec4 light)
 {
 #if KIND < 2

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Lists the tiles with ribbons and gives each a range for its list. The order of tiles and ranges
-// depends on chance.
+// is not fixed.
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(location = 0) uniform ivec2 band; // tiles: the first, the end
+layout(location = 0) uniform ivec2 band; // first tile, end
 layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint counts[]; };
 layout(std430, binding = BIND_TILE_ENDS_OUT) writeonly buffer Ends { uint ends[]; };
 layout(std430, binding = BIND_TILES_OUT) writeonly buffer Tiles { uint tiles[]; };
@@ -19,7 +19,7 @@ void main()
     if (count == 0u) return;
     uint number = atomicAdd(use[TILE_USE_TILES], 1u);
     tiles[number] = uint(tile);
-    if (number == 0u) { // the others add to the second of them
+    if (number == 0u) { // other lanes add to the word in between
         use[TILE_USE_GROUPS] = uint(TILE_ROW);
         use[TILE_USE_GROUPS + 2] = 1u;
     }

@@ -15,8 +15,8 @@ layout(std430, binding = BIND_TILE_COUNTS_OUT) readonly buffer Counts { uint cou
 layout(std430, binding = BIND_TILE_ENDS_OUT) readonly buffer Ends { uint ends[]; };
 layout(std430, binding = BIND_TILE_USE_OUT) readonly buffer Use { uint use[TILE_USE_WORDS]; };
 layout(std430, binding = BIND_TILES_OUT) readonly buffer Tiles { uint tiles[]; };
-// What a lane writes others of its group read. Images, not storage, which CPU drivers read a word
-// at a time.
+// Lanes read what other lanes of their group write. Images are used instead of storage buffers,
+// which CPU drivers read word by word.
 layout(binding = IMAGE_PAIRS, rg32ui) coherent uniform uimageBuffer pairs;
 layout(binding = IMAGE_SORTED, rg32ui) coherent uniform uimageBuffer sorted;
 #if STAGED
@@ -53,11 +53,12 @@ void sort_run(uint at, uint count, bool to_sorted)
 #else
     for (uint i = 0u; i < count; ++i) place += uint(comes_before(get(false, at + i), own));
 #endif
-    barrier(); // all have read
+    barrier(); // all lanes have read
     if (lane < count) put(to_sorted, at + place, own);
 }
 
-// Where the pair goes that is number i of a list that begins at `begin`, of runs of `length`.
+// The place after merging of pair number i, in a list that begins at `begin` and consists of sorted
+// runs of `length`.
 uint find_place(bool in_sorted, uvec2 pair, uint begin, uint count, uint length, uint i)
 {
     uint both = i / (2u * length) * 2u * length;
@@ -80,7 +81,7 @@ void main()
     if (group >= use[TILE_USE_TILES]) return;
     uint tile = tiles[group], count = counts[tile], end = ends[tile], begin = end - count;
     if (end > room) return;
-    bool in_sorted = true; // in the end, after one merge and another
+    bool in_sorted = true; // the last merge must write to `sorted`; each merge changes sides
     for (uint length = LENGTH; length < count; length *= 2u) in_sorted = !in_sorted;
     for (uint i = 0u; i < count; i += LENGTH)
         sort_run(begin + i, min(count - i, LENGTH), in_sorted);

@@ -15,8 +15,8 @@ Strip make_strip(uvec2 line, uvec4 span)
                  ivec2(span.z & 0xffffu, span.z >> 16), vec2(span.w & 0xffffu, span.w >> 16) + 0.5);
 }
 
-// First and last column that it may touch in rows top .. bottom, which are among its own; the last
-// is less than the first: none.
+// The first and the last column that the ribbon may touch in rows top .. bottom, which must be
+// among its own rows. If the last is less than the first, it touches none.
 ivec2 strip_columns(Strip s, int top, int bottom)
 {
     float middle = s.a.x + (0.5 * float(top + bottom + 1) - s.a.y) * s.slope,

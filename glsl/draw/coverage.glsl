@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The exact share of a square pixel that a straight ribbon covers (src/lanes/composite.c has
-// it for many pixels at once).
+// The exact share of a square pixel that a straight ribbon covers (src/lanes/composite.c computes
+// it for several pixels at once).
 
-// Share of the pixel on the positive side of a line at the signed distance t from its middle. `a`
-// >= `b` > 0 are the sides of the pixel as the distance sees them, that is the absolute components
-// of its gradient: the pixel's profile across the line is a box of width a spread by a box of width
-// b, a trapezoid. `scale` is 1 / (2 a b).
+// The share of the pixel on the positive side of a line at the signed distance t from its centre.
+// `a` >= `b` > 0 are the absolute components of the distance's gradient. The pixel's profile across
+// the line is a box of width a convolved with a box of width b, which is a trapezoid. `scale` is 1
+// / (2 a b).
 float share_above(float t, float a, float b, float scale)
 {
     float x = abs(t);
@@ -14,9 +14,9 @@ float share_above(float t, float a, float b, float scale)
     return t < 0.0 ? 1.0 - share : share;
 }
 
-// Coverage of the pixel by |across| < half_width, with the gradient of `across` by pixel. That is
-// near 1, but where hundreds of particles share a pixel slivers of triangles have any, even
-// infinite.
+// The coverage of the pixel by |across| < half_width; `gradient` is the change of `across` per
+// pixel. It is near 1, except where hundreds of particles share a pixel: slivers of triangles can
+// have any gradient, even an infinite one.
 float ribbon_coverage(float across, float half_width, vec2 gradient)
 {
     gradient = min(abs(gradient), 1e6);

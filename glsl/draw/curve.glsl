@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Strands on the way from their particles to the screen (needs material.h, hair_address.glsl).
-//   SMOOTH 0: from particle to particle
-//   SMOOTH 1: smooth curves, in material.smooth_parts parts a segment: Catmull-Rom with centripetal
-//      knots (through all particles) or the uniform cubic B-spline
+// Points of strands, between particles and screen (needs material.h, hair_address.glsl).
+//   SMOOTH 0: straight from particle to particle
+//   SMOOTH 1: smooth curves with material.smooth_parts parts for each segment: Catmull-Rom with
+//       centripetal knots (through all particles) or the uniform cubic B-spline
 //
-// So the B-spline, too, begins and ends at the strand's ends (kernel/curve.h).
+// The B-spline, too, begins and ends at the strand's ends (kernel/curve.h).
 #include "kernel/curve.h"
 
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
@@ -25,7 +25,7 @@ Curve curve_open(int root, int n)
 vec3 particle(Curve c, int j) { return texelFetch(position, c.root + j * STRAND_TILE).xyz; }
 
 #if SMOOTH
-// A segment's ends b and d, and their neighbours.
+// A segment's ends b and d, and their neighbours a and e.
 struct Around {
     vec3 a, b, d, e;
 };
@@ -51,7 +51,8 @@ vec3 curve_sum(Around o, CurveWeights w)
     return w.before * (o.b - o.a) + w.own * (o.d - o.b) + w.after * (o.e - o.d);
 }
 
-// Four points whose convex hull has all of segment j of the curve: the B-spline's own, or Bezier's.
+// Four points whose convex hull contains all of segment j of the curve: those of the B-spline, or
+// of a Bezier curve.
 vec3[4] curve_hull(Curve c, int j)
 {
     Around o = curve_around(c, j);
@@ -78,5 +79,5 @@ vec3 curve_point(Curve c, int k)
 #endif
 }
 
-// Where point k lies among the particles.
+// The place of point k, counted in particles.
 float curve_place(Curve c, int k) { return float(k) / float(c.parts); }

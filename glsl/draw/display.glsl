@@ -19,7 +19,8 @@ float display_of(float c)
 
 vec3 display_from_linear(vec3 c) { return vec3(display_of(c.r), display_of(c.g), display_of(c.b)); }
 
-// What --aov depth shows at the inverse distance `near`, 0: of nothing (needs draw.h).
+// The value that --aov depth shows for the inverse distance `near`; 0 if there is nothing (needs
+// draw.h).
 float depth_shown(float near)
 {
     float distance = 1.0 / max(near, 1e-20);

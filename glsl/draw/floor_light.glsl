@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The floor: a matt plane, lit as the mesh is, that fades away from its middle (needs lights.glsl,
-// shadow_surface.glsl).
-//   FLOOR 1: the plane is seen   2: only its shadow is seen, as black with an alpha
+// The floor: a matt plane, lit like the mesh, that fades out away from its middle (needs
+// lights.glsl, shadow_surface.glsl).
+//   FLOOR 1: the plane is visible   2: only its shadow is visible, as black with an alpha
 #include "kernel/floor.h"
 
 layout(location = 0) uniform vec3 floor_middle; // m
-layout(location = 1) uniform vec2 floor_reach;  // m: of the whole floor, of the last of it
+layout(location = 1) uniform vec2 floor_reach;  // m: where fading begins and ends
 layout(location = 2) uniform vec3 floor_color;  // linear RGB
 
 const vec3 FLOOR_UP = vec3(0.0, 1.0, 0.0);
 
-// Linear, premultiplied.
+// Linear, premultiplied colour of the floor.
 vec4 floor_shown(vec3 x, float there)
 {
     vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP, 1.0), light = around,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A ribbon's fragment: computes its coverage and stores a node in the A-buffer. Behind the mesh
-// nothing is stored.
+// A ribbon's fragment: computes its coverage and stores a node in the A-buffer. Fragments behind
+// the mesh are not stored.
 //   NEAREST 1: a ribbon hides everything behind it
 #include "draw/draw.h"
 #include "draw/coverage.glsl"
@@ -20,7 +20,7 @@ noperspective in float inverse_w;
 
 void main()
 {
-    // Of the pixel, as if it lay along the strand, what is beyond the root less what is beyond the
+    // As if the pixel lay along the strand: its share beyond the root minus its share beyond the
     // tip.
     vec2 beyond = clamp(ends + 0.5, 0.0, 1.0);
     float share = max(beyond.x + beyond.y - 1.0, 0.0);
@@ -30,12 +30,12 @@ void main()
 #else
     float alpha = color.a * coverage;
 #endif
-    if (!(alpha >= RIBBON_LEAST_OPACITY)) return; // nor what is not a number
+    if (!(alpha >= RIBBON_LEAST_OPACITY)) return; // NaN returns, too
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    uvec4 band = draw_params.band; // read once: a uniform costs a load wherever it is named
+    uvec4 band = draw_params.band; // a local copy: each use of a uniform costs a load
     uint shards = draw_params.shards;
     uint shard = uint((pixel.x >> 3) + (pixel.y & 56)) & (shards - 1u);
-    // Counts on past the end: so the pool learns its size.
+    // The counter goes on past the end of the pool, so that the host learns the size it needs.
     uint slot = atomicAdd(counters[shard * SHARD_RUN], 1u);
     if (slot >= band.w) return;
     uint index = (slot / SHARD_RUN * shards + shard) * SHARD_RUN + slot % SHARD_RUN;

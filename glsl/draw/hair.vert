@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The hair's ribbons: two vertices a particle, shared by the segments that meet there, as
-// hair_project.comp has found them. Nothing is left to be divided by w: all is linear on the
-// screen, and Mesa's clipping loses pieces of triangles that leave the picture by a corner if their
-// w differ.
+// The hair's ribbons: two vertices for each particle, shared by the segments that meet there;
+// hair_project.comp has computed them. No division by w is left, because all values are linear on
+// the screen, and because Mesa's clipping loses parts of triangles that leave the picture at a
+// corner if their w differ.
 #include "draw/draw.h"
 
-// px: middle, halves: half of the way across, distances from both ends.
+// px: middle; as halves: half of the vector across, distances from both ends.
 layout(binding = BIND_EDGES) uniform usamplerBuffer edges;
 // 1/w, half-width, four halves: linear RGB, opacity.
 layout(binding = BIND_SHADES) uniform usamplerBuffer shades;

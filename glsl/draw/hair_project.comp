@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
 // Projects and shades every particle once, a strand for each lane. Strands outside the picture are
-// left out, and particles where the ribbon is straight. CPU drivers process vertices one by one on
-// one thread, so fewer vertices make drawing faster.
+// left out, as are particles where the ribbon is straight. CPU drivers process vertices one by one
+// in one thread, so fewer vertices make drawing faster.
 //
-// On the screen a ribbon's edges run at the half-width h beside its middle line; here both are
-// pushed out to h + PAD, so that every pixel that the ribbon touches gets a fragment. At a joint
-// the edges of both segments meet on the mitre, at m (h + PAD) with m = (n0 + n1) / (1 + n0.n1), n
-// the segments' unit normals: no gap, no double coverage, and the distance to either middle line
-// is h + PAD exactly, so that interpolating it is exact, too. At both ends of the strand the ribbon
-// is PAD longer, and the distance beyond its end is interpolated like that. Where a strand folds
-// back, m is kept from growing.
+// On the screen a ribbon's edges run at the half-width h beside its middle line. Here both are
+// moved outwards to h + PAD, so that every pixel that the ribbon touches gets a fragment. At a
+// joint the edges of both segments meet on the mitre, at m (h + PAD) with m = (n0 + n1) / (1 +
+// n0.n1), where n0 and n1 are the segments' unit normals. So there is no gap and no double
+// coverage, and the distance to either middle line is exactly h + PAD, so that its interpolation is
+// exact. At both ends of the strand the ribbon is PAD longer, and the distance beyond its end is
+// interpolated in the same way.
+// Where a strand folds back, |m| is limited.
 #define WALK_BEYOND 0
 #include "draw/ribbon_walk.glsl"
 
 const float PAD = 0.71;      // px; the corner of a pixel is sqrt(1/2) from its middle
-const float MITRE_MAX = 2.9; // bound of |m|: sqrt(2 x) / max(x, RIBBON_FOLD) over all x
+const float MITRE_MAX = 2.9; // limit of |m|: the maximum of sqrt(2 x) / max(x, RIBBON_FOLD) over x
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-// How many; 1: they are those of the list (block_cull.comp)
+// The number of strands; y = 1: strands of the list (block_cull.comp)
 layout(location = 0) uniform ivec2 strands;
 layout(binding = BIND_LISTED) uniform usamplerBuffer listed;
 layout(binding = BIND_STRAND_ID) uniform usamplerBuffer strand_id;
@@ -29,13 +30,14 @@ layout(std430, binding = BIND_COMMAND_OUT) buffer Command { uint command[]; };
 layout(std430, binding = BIND_COUNTERS_OUT) buffer Counters { uint counters[]; };
 layout(std430, binding = BIND_EXTENT_OUT) buffer Extent { int extent[4]; }; // x, y lowest, highest
 
-// px. Edges reach PAD beyond the ribbon: of segments that are much shorter and turn, as of hair
-// that points at the eye, many cover the same pixel each by itself, and hide more than there is.
+// px: the shortest segment. Edges reach PAD beyond the ribbon. Where hair points at the eye, many
+// much shorter segments with changing directions would each cover the same pixel, and together hide
+// too much.
 const float LEAST_WAY = 0.5;
-const float FAR = 3e4; // px: ends farther off than the picture is long; a half still holds it
+const float FAR = 3e4; // px: stands for "far outside the picture"; fits into a half float
 
-// Stores the particle for the vertex shader: d0 and d1 the directions of the ribbon before and
-// after it, `beyond` the ends' distances along the strand, both -PAD at its own end.
+// Stores the particle for the vertex shader. d0 and d1: directions of the ribbon before and after
+// it; `beyond`: distances along the strand beyond its two ends, -PAD at the respective end.
 void store(int index, Particle p, vec2 d0, vec2 d1, vec2 beyond, float opacity)
 {
     if (d0 == vec2(0.0)) d0 = d1;
@@ -49,7 +51,7 @@ void store(int index, Particle p, vec2 d0, vec2 d1, vec2 beyond, float opacity)
                           packHalf2x16(p.color.rg), packHalf2x16(vec2(p.color.b, opacity)));
 }
 
-// Two triangles for each of the `count` - 1 segments from the particle `first` on.
+// Two triangles for each of the `count` - 1 segments that begin at the particle `first`.
 void emit_segments(int first, int count)
 {
     int at = int(atomicAdd(command[COMMAND_INDEX_COUNT], uint(6 * (count - 1))));
@@ -65,10 +67,10 @@ void emit_segments(int first, int count)
     }
 }
 
-int first = 0;          // place of the strand's root
-int count = 0;          // of its points that are kept
-float from_root = -PAD; // of the walk's `kept`, px
-vec4 box = vec4(1e6);   // px: least x, y and what is least of -x, -y
+int first = 0;          // index of the strand's root
+int count = 0;          // its kept points
+float from_root = -PAD; // px: distance of the walk's `kept` from the root
+vec4 box = vec4(1e6);   // px: least x, y, -x, -y
 
 void see_point(Particle p)
 {

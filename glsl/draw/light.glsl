@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cells of the light grid (needs light.h). Cells with hair have the first slots, cells beside them
-// the next ones. The order within both depends on chance; nothing depends on it.
+// Cells of the light grid (needs light.h). Cells with hair have the first slots, cells next to them
+// the following slots. The order within both groups is not fixed, and no result depends on it.
 
 #include "kernel/cell.h"
 #include "kernel/lamp.h"
@@ -14,7 +14,7 @@ vec3 to_lattice(vec3 v)
                 dot(light_params.turn[2].xyz, v));
 }
 
-// The cell of a place; hair that is sound lies in the lattice.
+// The cell of a place. Hair with valid positions lies in the lattice.
 ivec3 cell_around(vec3 x)
 {
     return ivec3(clamp((x - light_params.low.xyz) / side, vec3(0.0), vec3(cells - 1)));
@@ -30,7 +30,7 @@ bool cell_inside(ivec3 cell)
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, cells));
 }
 
-// Where three floats of an ordinate and slot begin.
+// Index of the first of three floats of an ordinate and slot.
 int ordinate_address(int d, int slot) { return 3 * (d * int(light_params.room) + slot); }
 
 // The column of an ordinate and channel in a row of LIGHT_WIDE.
@@ -39,8 +39,8 @@ int wide_address(int d, int channel)
     return (d / LIGHT_LANES * 3 + channel) * LIGHT_LANES + d % LIGHT_LANES;
 }
 
-// The light of an ordinate from around all hair: from above (+y of the world) comes the sky, from
-// below the ground, evenly between them.
+// The ambient light of an ordinate: sky from above (+y of the world), ground from below,
+// interpolated between.
 vec3 light_from_around(int d)
 {
     vec3 out_of = light_params.ordinate[d].xyz;
@@ -51,7 +51,7 @@ vec3 light_from_around(int d)
                 lamp_around(sky.b, ground.b, up));
 }
 
-// Axis `axis` first, then those that follow it.
+// Rotates components so that axis `axis` comes first.
 vec3 turned(vec3 v, int axis) { return axis == 0 ? v.xyz : axis == 1 ? v.yzx : v.zxy; }
 ivec3 turned(ivec3 v, int axis) { return axis == 0 ? v.xyz : axis == 1 ? v.yzx : v.zxy; }
 

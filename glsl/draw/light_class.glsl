@@ -14,7 +14,7 @@ vec3 class_tangent(int which)
                 texelFetch(light_tables, at + 2).x);
 }
 
-// The nearest class of a vector of any length.
+// The nearest class to a vector of any length.
 int class_of(vec3 t)
 {
     int axis = longest_axis(t);

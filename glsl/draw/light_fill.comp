@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The optical depth of a cell for each ordinate, and the light that the lamps leave in it after one
-// scattering: light_grid_cells.c. A work group for each cell, a lane for each ordinate. Values that
-// are the same for all ordinates are computed by every lane.
+// The optical depth of a cell for each ordinate, and the light of the lamps after one scattering in
+// the cell: light_grid_cells.c. A work group for each cell, a lane for each ordinate. Each lane
+// computes the values that are common to all ordinates itself.
 #include "draw/light.h"
 #include "draw/light.glsl"
 #include "draw/light_class.glsl"
@@ -9,14 +9,14 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
-layout(location = 2) uniform ivec2 range; // of slots: the first, and behind the last
+layout(location = 2) uniform ivec2 range; // slots: first, end
 layout(binding = BIND_LIGHT_FIRST) uniform samplerBuffer first;
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
 layout(std430, binding = BIND_LIGHT_SUMS_OUT) readonly buffer Sums { uint sums[]; };
 layout(std430, binding = BIND_LIGHT_DEPTH_OUT) writeonly buffer Depth { float depth[]; };
 layout(std430, binding = BIND_LIGHT_SOURCE_OUT) writeonly buffer Source { float source[]; };
 
-// The sum of a class, number 0 its area, 1 + l what light l meets, over LIGHT_STEPS.
+// A sum of a class over LIGHT_STEPS: number 0 is its area, 1 + l the area that light l reaches.
 float sum_of(int slot, int which, int number)
 {
     int at = 2 * ((slot - range.x) * int(light_params.classes) + which) *
@@ -25,11 +25,11 @@ float sum_of(int slot, int which, int number)
     return (float(sums[at + 1]) * 4294967296.0 + float(sums[at])) * (1.0 / LIGHT_STEPS);
 }
 
-// The main tangent by power iteration on the sum of t t^T, on the side of most tips.
+// The main tangent, by power iteration on the sum of t t^T, with the sign of the mean tangent.
 struct Tangents {
     mat3 tensor;
     vec3 mean, main;
-    vec4 kinds; // areas
+    vec4 kinds; // areas of the kinds
     float most, area;
 };
 
@@ -58,9 +58,9 @@ int main_class(Tangents all)
     return kind * LIGHT_CLASSES + class_of(main);
 }
 
-// One step of a straight way along an axis, whose wall it crosses.
+// A step of a straight path through cells: it crosses a wall along one axis.
 struct March {
-    ivec3 at; // cell, by the axes along and across the way
+    ivec3 at; // cell; x is along the path's main axis
     float passed;
     bool inside;
 };
@@ -79,8 +79,8 @@ void step_to(inout March march, int next, int k, ivec3 origin, ivec3 stride, ive
     march.passed *= wall_at(first + from.x + from.y + from.z);
 }
 
-// The share of light that the mesh lets through from the middle of a cell along the unit vector
-// `way`, as far as `reach` (m): light_blocks_march.
+// The share of light that the mesh lets through from the centre of a cell along the unit vector
+// `way`, up to the distance `reach` (m): light_blocks_march.
 float pass_mesh(ivec3 place, vec3 way, float reach)
 {
     int axis = longest_axis(way);
@@ -94,7 +94,7 @@ float pass_mesh(ivec3 place, vec3 way, float reach)
     for (int k = 1; float(k) <= most && march.inside && march.passed > 0.0; ++k) {
         vec3 off = float(k) * along / main;
         ivec3 next = start + ivec3(sign(off) * floor(abs(off) + 0.5));
-        step_to(march, next.y, 1, origin, stride, count); // across before along
+        step_to(march, next.y, 1, origin, stride, count); // the other axes before the main axis
         step_to(march, next.z, 2, origin, stride, count);
         step_to(march, next.x, 0, origin, stride, count);
     }
@@ -156,8 +156,8 @@ void main()
         }
         vec3 color = draw_params.light_color[light].rgb;
         sent += part * color * tint / max(tau, 1e-12);
-        // A matt surface square to a light of 1 shows its colour; those in a cell lie any way
-        // towards the light, half as bright in the mean.
+        // A matt surface perpendicular to light of 1 shows its colour. Surfaces in a cell have all
+        // orientations towards the light, so they are half as bright on average.
         glow += 0.5 * lit / max(tangents.area, 1e-12) * passed * color * draw_params.mesh_color.rgb;
     }
     if (int(gl_LocalInvocationID.x) >= LIGHT_ORDINATES) return;

@@ -19,7 +19,8 @@ layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
 layout(std430, binding = BIND_LIGHT_SEEN_OUT) writeonly buffer Seen { float seen[]; };
 
-// Towards the eye, of the light from an ordinate: between the four nodes around a tangent.
+// The weight of an ordinate's light towards the eye, interpolated between the four nodes around a
+// tangent.
 vec3 weight_of(CellTangent at, int d)
 {
     int row = (kind * CELL_PATCHES + at.in_patch) * LIGHT_WIDE + wide_address(d, 0);
@@ -34,8 +35,8 @@ vec3 weight_of(CellTangent at, int d)
     return weight;
 }
 
-// The slot of a cell around a place, nearest in the lattice. What has none has the light from
-// around.
+// The slot of the cell at a place, clamped to the lattice. Cells without a slot have the ambient
+// light.
 int slot_near(ivec3 at) { return slots[cell_address(clamp(at, ivec3(0), cells - 1))]; }
 
 vec3 light_at(int slot, int d)
@@ -77,7 +78,7 @@ void put(int s, int point, int points, vec3 light)
     for (int k = 0; k < 3; ++k) seen[at + k] = light[k];
 }
 
-// Points of the curve between two particles are interpolated.
+// Light at curve points between two particles is interpolated.
 void main()
 {
     int s = lane_index(), n = int(material.vertex_count), parts = int(material.smooth_parts),

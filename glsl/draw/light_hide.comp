@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds the cells of the light grid that lie so deep in hair that they can hardly be seen, and
+// Finds the cells of the light grid that lie so deep in hair that they are hardly visible, and
 // their mean light.
 #include "draw/light.h"
 #include "draw/light.glsl"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Cuts segments into parts that lie in one cell each, and adds them up by cell: light_grid_items.c,
-// with sums in place of a sorted list. Sums are whole numbers of two words, so their order does not
-// matter.
+// Cuts segments into parts that lie in one cell each, and adds them up for each cell:
+// light_grid_items.c, with sums instead of a sorted list. The sums are integers of two words, so
+// the order of additions does not matter.
 //   ITEMS 0: marks the cells
 //   ITEMS 1: adds up areas divided by a side's square, by cell and class of tangent, and painted
 //       hair's also by colour
 //   ITEMS 2: adds up the parts of these areas that light `light` reaches
-//   SHADOW 2: this light has a map of hair (0 in the others)
+//   SHADOW 2: light `light` has a shadow map of hair; 0: it has none
 #include "draw/light.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
@@ -25,19 +25,19 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(std430, binding = BIND_LIGHT_SLOTS_OUT) buffer Slots { int slots[]; };
 #if ITEMS
 layout(location = 0) uniform int kind;
-layout(location = 2) uniform ivec2 range; // of slots: the first, and behind the last
+layout(location = 2) uniform ivec2 range; // slots: first, end
 #if ITEMS == 2
 layout(location = 1) uniform int light;
 #endif
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
-// [slot][class][1 + lights][2]: the area, and what each light meets of it
+// [slot][class][1 + lights][2]: the area, and the area that each light reaches
 layout(std430, binding = BIND_LIGHT_SUMS_OUT) buffer Sums { uint sums[]; };
 #endif
 
 // Segment j of a strand.
 struct Segment {
-    vec3 a, b;  // its ends in the world, m
-    float area; // 2 r length times opacity over a side's square, in steps
+    vec3 a, b;  // ends in the world, m
+    float area; // 2 r length opacity / side^2, in steps
 };
 
 Segment find_segment(Curve curve, Painter painter, int j)
@@ -75,7 +75,7 @@ int sums_address(int slot, Segment s)
 #endif
 
 #if ITEMS == 1
-// The colour's albedo over the mean one's.
+// The albedo of a colour over the albedo of the mean colour.
 vec3 tint_of(int at)
 {
     vec3 albedo = material.mean_albedo.rgb;
@@ -98,7 +98,7 @@ void put(Segment s, int slot, int at, float area)
     }
 }
 #elif ITEMS == 2
-// What hair leaves of the light at particle j; the light is found where the curve is.
+// The share of the light that hair lets through to particle j, at its place on the curve.
 float find_left(Curve curve, Painter painter, int j)
 {
 #if SHADOW
@@ -111,7 +111,7 @@ float find_left(Curve curve, Painter painter, int j)
 #endif
 }
 
-// What a light of 1 is at x of a lamp.
+// The share of a lamp's colour that arrives at x.
 float find_lamp(vec3 x)
 {
     vec3 to_light;

@@ -5,7 +5,7 @@
 #include "draw/light.glsl"
 
 layout(local_size_x = 1) in;
-layout(location = 0) uniform ivec2 sweep; // its number; the last one's that there may be
+layout(location = 0) uniform ivec2 sweep; // number of this sweep; number of the last possible one
 layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
 {
     LightState state;

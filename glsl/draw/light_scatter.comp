@@ -34,6 +34,6 @@ void main()
     }
     sum *= cell[slot].tint.rgb;
     for (int k = 0; k < 3; ++k) source[at + k] = sum[k];
-    // The mesh sends back its colour's share, alike to all sides.
+    // The mesh reflects its colour's share of the light equally in all directions.
     if (d == 0) cell[slot].glow.rgb = draw_params.mesh_color.rgb * mean / float(LIGHT_ORDINATES);
 }

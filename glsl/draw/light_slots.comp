@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Gives slots to the marked cells of the light grid, then to the cells beside them, which points
-// between cells read, too.
-//   BESIDE 0: marks become slots   1: cells beside cells with slots get slots   2: slots get the
+// Gives slots to the marked cells of the light grid, then to the cells next to them, which
+// interpolation between cells reads.
+//   BESIDE 0: marks become slots   1: cells next to cells with slots get slots   2: slots get the
 //       numbers of their cells
 #include "draw/light.h"
 #include "draw/light.glsl"
@@ -11,7 +11,7 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(std430, binding = BIND_LIGHT_SLOTS_OUT) buffer Slots
 {
     int slots[];
-}; // 1 is a mark; -1: none
+}; // 1: marked; -1: no slot
 layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State { LightState state; };
 #if BESIDE == 2
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
@@ -25,7 +25,7 @@ void main()
 #if BESIDE == 0
     slots[at] = slot == 1 ? int(atomicAdd(state.filled, 1u)) : -1;
 #elif BESIDE == 1
-    // Others get slots meanwhile, behind those with hair.
+    // Other lanes give out slots meanwhile; those are behind the slots with hair.
     int filled = int(state.filled);
     if (slot >= 0) return;
     ivec3 place = cell_place(at);

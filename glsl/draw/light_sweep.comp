@@ -8,7 +8,7 @@
 #include "draw/light_walls.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
-layout(location = 0) uniform ivec2 sweep; // its number; 1: light comes from around, too
+layout(location = 0) uniform ivec2 sweep; // number of this sweep; 1: with ambient light
 layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots[]; };
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
 layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
@@ -16,7 +16,7 @@ layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
     LightState state;
     vec4 met[];
 };
-// [ordinate][2], light that leaves the cells of a slice, with a cell around
+// [ordinate][2]: light that leaves the cells of a slice, with a border of one cell
 layout(std430, binding = BIND_LIGHT_PLANES_OUT) coherent buffer Planes { vec4 plane[]; };
 layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float depth[]; };
 layout(std430, binding = BIND_LIGHT_SOURCE_OUT) readonly buffer Source { float source[]; };
@@ -27,8 +27,8 @@ int d = int(gl_WorkGroupID.x), group = d / LIGHT_LANES, axis = group / 2;
 bool forward = group % 2 == 1;
 vec3 way = turned(light_params.ordinate[d].xyz, axis);
 ivec3 count = turned(cells, axis), stride = turned(ivec3(1, cells.x, cells.x *cells.y), axis);
-float longer = 1.0 / abs(way.x); // of a cell along the ordinate
-// Weights of the cells before, by the axes across.
+float longer = 1.0 / abs(way.x); // length of the way through a cell over the cell's side
+// Weights of three cells of the slice before, along one axis across.
 vec3 weights(float shift) { return vec3(max(shift, 0.0), 1.0 - abs(shift), max(-shift, 0.0)); }
 vec3 column_weights = weights(way.y * longer), row_weights = weights(way.z * longer);
 
@@ -36,7 +36,7 @@ vec3 column_weights = weights(way.y * longer), row_weights = weights(way.z * lon
 ivec3 wall_stride = turned(wall_step, axis);
 ivec3 wall_first =
     ivec3(wall_origin(axis), wall_origin((axis + 1) % 3), wall_origin((axis + 2) % 3));
-// The wall of an axis k (0: along) at a slice, column and row.
+// The wall of axis k (0: along) at a slice, column and row.
 float wall(int first, ivec3 at)
 {
     ivec3 from = at * wall_stride;
@@ -49,7 +49,7 @@ int plane_address(int parity, int x, int y)
     return (2 * d + parity) * int(light_params.plane) + (y + 1) * (count.y + 2) + x + 1;
 }
 
-// Of row y of the slice before, blended along the columns.
+// The light of row y of the slice before, blended along the columns.
 vec3 row_light(int parity, int slice, int x, int y)
 {
     vec3 weight = column_weights;
@@ -74,7 +74,7 @@ vec3 incoming(int parity, int slice, int x, int y, int slot)
                  weight.y * row_light(parity, before, x, y) +
                  weight.z * row_light(parity, before, x, y + 1);
 #if WALLED
-    // What comes from the side of the mesh is what that sends back.
+    // Replaces the light that the mesh blocks by the light that the mesh reflects.
     float passed = wall(wall_first.x, ivec3(forward ? slice : slice + 1, x, y));
     vec3 glow = slot >= 0 && slot < int(state.filled) ? cell[slot].glow.rgb : vec3(0.0);
     light = passed * light + (1.0 - passed) * glow;
@@ -90,7 +90,8 @@ void keep(int at, vec3 mean)
     }
 }
 
-// What leaves the cell of what comes in (kernel/cell.h); adds what its hair meets.
+// The light that leaves the cell (kernel/cell.h). Adds the light that the cell's hair meets to
+// `sum`.
 vec3 cross_cell(vec3 light, int slot, inout vec3 sum)
 {
     if (slot < 0) return light;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The light that reaches a point (needs draw.h).
 //   SHADOW, SHADOW_BY_MESH, LIGHT_COUNT: see shadow.glsl
-//   LIGHTS 0: directional lights, and the same from everywhere else   1: also points, spots, a sky
+//   LIGHTS 0: only directional lights and one ambient colour   1: also point lights, spots, a sky
 
 #include "kernel/lamp.h"
 #if SHADOW
@@ -16,8 +16,8 @@ int light_count = draw_params.light_count;
 #endif
 
 #if LIGHTS
-// The share of light i's colour that a surface at x square to it is given, and the unit vector
-// towards it. A directional light's place is its direction, with w = 0.
+// The share of light i's colour that a perpendicular surface at x receives, and the unit vector
+// towards the light. A directional light's place is its direction, with w = 0.
 float light_share(int i, vec3 x, out vec3 to_light)
 {
     vec4 place = draw_params.light_place[i], axis = draw_params.light_axis[i],
@@ -29,8 +29,8 @@ float light_share(int i, vec3 x, out vec3 to_light)
 }
 #endif
 
-// Linear RGB of light i at x, as a matt white surface square to it would show it, were nothing
-// between them, and the unit vector towards it.
+// Linear RGB of light i at x, as a matt white surface perpendicular to it would show without
+// occluders, and the unit vector towards the light.
 vec3 light_sent(int i, vec3 x, out vec3 to_light)
 {
 #if LIGHTS
@@ -41,14 +41,14 @@ vec3 light_sent(int i, vec3 x, out vec3 to_light)
 #endif
 }
 
-// The same with what stands between them. With SHADOW, x is the point of the last shadow_find.
+// Like light_sent, but with shadows. If SHADOW is set, x must be the point of the last shadow_find.
 vec3 light_reaching(int i, vec3 x, out vec3 to_light)
 {
     return light_sent(i, x, to_light) * light_left(i);
 }
 
-// The mean light from everywhere on surfaces whose unit normals fan out by so much about n, above
-// them the sky and below the ground: `share` is 1 for a plane.
+// The mean ambient light on surfaces whose unit normals spread around n; `share` is the length of
+// their mean normal, 1 for a plane.
 vec3 light_around(vec3 n, float share)
 {
     float up = share * n.y;
@@ -57,9 +57,9 @@ vec3 light_around(vec3 n, float share)
                 lamp_around(sky.b, ground.b, up));
 }
 
-// The same on the side of a fibre that is seen, whose unit tangent has the cosine `eye` with the
-// unit vector to the eye: a normal at the angle a off the middle is seen by cos a, so that PI/4 of
-// the middle one counts.
+// The ambient light on the visible side of a fibre, whose unit tangent has the cosine `eye` with
+// the unit vector to the eye. A normal at the angle a from the middle of this side has the weight
+// cos a, so the mean normal is PI/4 times the middle one.
 vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
 {
 #if LIGHTS

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Lights the mesh, in linear light, for each pixel whose middle shows it. Surfaces that are seen
-// from behind are lit as if seen from the front.
+// Lights the mesh, in linear light, for each pixel whose centre shows it. Surfaces that are seen
+// from behind are lit like front faces.
 //   SKIN 0: Lambert's matt surface   1: see kernel/skin.h
 #include "draw/draw.h"
-#define MESH_TAPS 4 // of its own map, whose texels are seen where light grazes it
+#define MESH_TAPS 4 // of its own shadow map, whose texels would show under grazing light
 #include "draw/lights.glsl"
 #if SKIN
 #include "kernel/skin.h"
@@ -15,7 +15,8 @@
 layout(binding = BIND_SURFACE) uniform sampler2D surface;
 layout(location = 0) out vec4 color; // linear
 
-// What the mesh shows at x with the unit normal n where it sees the share `open` of the sky.
+// The light that the mesh shows at x with the unit normal n, where it sees the share `open` of the
+// sky.
 vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
 {
     vec4 own = draw_params.mesh_color;
@@ -23,7 +24,7 @@ vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
                      lamp_around_into(open, own.b)),
          light = own.a * light_around(n, 1.0) * into, highlight = vec3(0.0);
 #if SHADOW
-    x += shadow_params.mesh_lift * n; // so that the surface does not shadow itself
+    x += shadow_params.mesh_lift * n; // avoids self-shadowing
     shadow_find_on(x, n);
 #endif
     for (int i = 0; i < light_count; ++i) {

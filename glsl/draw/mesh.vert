@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The head or body, carried by the head's motion.
+// The head or body, moved by the head's motion.
 #include "draw/draw.h"
 #include "common/rigid.glsl"
 
 layout(location = 0) in vec3 position; // m, the head's frame
 layout(location = 1) in vec3 normal;
-layout(location = 2) in float open; // share of the sky
+layout(location = 2) in float open; // visible share of the sky
 
-invariant gl_Position; // by both of its programs
+invariant gl_Position; // the same in both of its programs
 out vec3 world_position;
-out vec3 world_normal; // as long as the share of the sky
+out vec3 world_normal; // its length is the visible share of the sky
 
 void main()
 {

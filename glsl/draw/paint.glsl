@@ -5,15 +5,15 @@
 layout(binding = BIND_PAINT) uniform usamplerBuffer paint;
 #endif
 
-// Read once: a uniform costs a load wherever it is named.
+// A local copy, because each use of a uniform costs a load.
 struct Painter {
     uint id;
-    vec3 tint;    // PAINT 0: the strand's colour, 1: a factor of it
+    vec3 tint;    // PAINT 0: the strand's colour; 1: a factor for its colours
     float radius; // m
     float thinning;
 };
 
-// Strands differ by brightness, and by red against blue.
+// Strands differ in brightness, and in red against blue.
 Painter paint_strand(uint id, int n)
 {
     float warmth = material.warmth_variation * hash_signed((id ^ draw_params.seed) + 0x9e3779b9u);
@@ -25,7 +25,7 @@ Painter paint_strand(uint id, int n)
     return Painter(id, tint, material.radius, (1.0 - material.tip_ratio) / float(n - 1));
 }
 
-// Of particle j, which lies at `at`, or of a place between it and the next.
+// The colour of particle j, which lies at `at`, or of a place between it and the next.
 vec3 paint_color(Painter p, int at)
 {
 #if PAINT
@@ -50,7 +50,7 @@ float paint_radius(Painter p, int at, float j)
     return max(p.radius * share, 1e-9);
 }
 
-// Factor of all opacities of a strand whose root lies at `root`.
+// A factor for all opacities of the strand whose root lies at `root`.
 float paint_opacity_share(int root)
 {
 #if PAINT

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The vector from the eye through a point of the picture (px), up to one metre before the plane
-// through the eye (needs draw.h).
+// The vector from the eye through a point of the picture (px), to the plane one metre in front of
+// the eye (needs draw.h).
 //
-// At the eye clip x, y and w are 0. So a point at the offset q from the eye has clip x, y, w = (a
+// At the eye, clip x, y and w are 0. So a point at the offset q from the eye has clip x, y, w = (a
 // q, b q, c q), with the rows a, b, c of the matrix. For w = 1 they are x, y and 1; Cramer's rule
 // solves for q.
 vec3 ray_through(vec2 px)

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A pixel's fragments become its colour: the LAYERS nearest in order, the rest blended out of order
-// under them, all over what stands behind, premultiplied and in linear light.
-//   BASE 0: the background alone stands behind   1: the mesh does
-//   DEPTH 1: the distance of the nearest fragment, else of the mesh, instead
-//   SAMPLES: the picture has the mean of SAMPLES x SAMPLES pixels of the lists
-//   MOST_TURNS: fragments that the driver lets all loops visit
+// Blends a pixel's fragments: the LAYERS nearest in order, the rest behind them without order, and
+// all over the base, premultiplied and in linear light.
+//   BASE 0: only the background lies behind   1: the mesh, too
+//   DEPTH 1: shows the distance of the nearest fragment, otherwise of the mesh
+//   SAMPLES: a pixel of the picture is the mean of SAMPLES x SAMPLES pixels of the lists
+//   MOST_TURNS: number of fragments that the driver's loops can visit
 //
-// The rest is summed in whole numbers, which give the same sum in every order: colour times alpha,
-// alpha, and optical depth -log2(1 - alpha). Together they let through what they would in any
-// order, and show their mean colour. A depth that nothing shines through may as well stay there.
+// The rest is summed up as integers, so the sum does not depend on the order: colour times alpha,
+// alpha, and optical depth -log2(1 - alpha). Together the fragments have the same transmittance as
+// in any order, and show their mean colour. The optical depth is capped where nothing is visible
+// behind it.
 #include "draw/draw.h"
 #include "kernel/edge.h"
 #include "draw/abuffer.glsl"
@@ -19,17 +20,18 @@ layout(binding = BIND_HEADS) uniform usamplerBuffer heads;
 #if BASE
 layout(binding = BIND_BASE) uniform sampler2D base;
 #if DEPTH
-layout(binding = BIND_SURFACE) uniform sampler2D mesh_depth; // the base is drawn: its unit is free
+// The base has been drawn, so its texture unit is free.
+layout(binding = BIND_SURFACE) uniform sampler2D mesh_depth;
 #endif
 #endif
 layout(std430, binding = BIND_SHORTAGE_OUT) writeonly buffer Shortage { uint shortage; };
-layout(location = 0) out vec4 pixel_out; // sRGB, alpha not multiplied in; or premultiplied light
+layout(location = 0) out vec4 pixel_out; // sRGB with straight alpha; or premultiplied light
 
 const float COLOR_STEPS = 16384.0;
 const float COLOR_MAX = 8.0;
 const float DEPTH_STEPS = 4096.0;
 const int DEPTH_MAX = 1 << 24;
-// A colour is at most 2^17 steps: their sum is carried over to a second word in time.
+// A colour is at most 2^17 steps, so the sum is carried to a second word before it overflows.
 const int CARRY_EVERY = 8192;
 const int CARRY_BITS = 16;
 
@@ -50,9 +52,9 @@ vec4 rest_color(ivec4 high, ivec4 low, int optical_depth)
     return vec4(mean * alpha, alpha);
 }
 
-int count = 0; // of all fragments visited
+int count = 0; // fragments visited so far
 
-// A pixel of the lists: light, premultiplied.
+// The light of a pixel of the lists, premultiplied.
 vec4 blend(ivec2 pixel)
 {
     int link = int(

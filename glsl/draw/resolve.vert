@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hair's box on the screen, as a strip of two triangles, out to whole pixels of SAMPLES.
+// The hair's box on the screen as a strip of two triangles, extended to whole pixels of SAMPLES.
 #include "draw/draw.h"
 
 layout(binding = BIND_EXTENT) uniform isamplerBuffer extent; // x, y lowest, highest, px

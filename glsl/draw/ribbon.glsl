@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Strands on the screen, shared by all shaders that draw them: the places of their particles, their
-// widths, and which particles may be left out (needs draw.h).
+// Strands on the screen, for all shaders that draw them: the places of particles, their widths, and
+// the test whether a particle can be left out (needs draw.h).
 #include "kernel/ribbon.h"
 
-// Read once: a uniform costs a load wherever it is named.
+// A local copy, because each use of a uniform costs a load.
 mat4 clip_from_world = draw_params.clip_from_world;
 vec2 size = vec2(draw_params.width, draw_params.height); // of the picture, px
 float near_distance = draw_params.near_distance, focal = draw_params.focal;
 
-// Where the strand is drawn instead, all in clip space, when `x` lies behind the near plane: on
-// that plane, towards the neighbour that is in sight.
+// Moves a point in front of the near plane (clip space) to that plane, towards the neighbour that
+// is behind it.
 vec4 clip_near(vec4 x, vec4 before, vec4 after)
 {
     vec4 other = after.w >= near_distance ? after : before;
@@ -36,7 +36,7 @@ struct Particle {
 
 vec2 way_from(Particle a, Particle b) { return vec2(b.at.x - a.at.x, b.at.y - a.at.y); }
 
-// Unit direction from a to b on the screen, 0 where there is none.
+// The unit direction from a to b on the screen; 0 if they coincide.
 vec2 direction(Particle a, Particle b)
 {
     vec2 way = way_from(a, b);
@@ -46,7 +46,7 @@ vec2 direction(Particle a, Particle b)
                : vec2(0.0);
 }
 
-// As ribbon_bend, colours so that it cannot be seen.
+// Like ribbon_bend, with an additional limit for the error of colours, below what is visible.
 float bend(Particle a, Particle p, Particle b)
 {
     vec3 off = abs(p.color - mix(a.color, b.color, ribbon_share(a.at, p.at, b.at))) /
@@ -54,7 +54,7 @@ float bend(Particle a, Particle p, Particle b)
     return max(ribbon_bend(a.at, p.at, b.at), max(max(off.r, off.g), off.b));
 }
 
-// `normal` of any length lies across the ribbon.
+// `normal`: a vector of any length across the ribbon.
 float outline_half_width(Particle p, vec2 normal)
 {
     return p.at.half_width * ribbon_widening(normal.y, -normal.x, p.at.x - draw_params.axis.x,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The loop along a strand that both rasterisers use: it projects and shades the strand's points,
-// and leaves out those where the ribbon is straight. The file that includes this one says what is
-// done with the ribbons. It defines three functions and WALK_BEYOND, the number of additional turns
-// after the last point, in which the tip takes the place of the missing points.
+// and leaves out points where the ribbon is straight. The including file decides what is done with
+// the ribbons. It defines three functions and WALK_BEYOND, the number of additional turns after the
+// last point, in which the tip takes the place of missing points.
 #include "draw/draw.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
@@ -13,17 +13,18 @@
 #include "draw/ribbon.glsl"
 
 struct Walk {
-    int points;          // of the strand: particles, or those of its curve
+    int points;          // points of the strand: particles, or points of its curve
     float opacity;       // of the strand
-    Particle kept, last; // the last one not left out; the one before this one
+    Particle kept, last; // the last kept point; the previous point
     vec2 way;            // the ribbon's direction before `kept`
-    float bent;          // of all that was left out since `kept`
+    float bent;          // sum of ribbon_bend over the points left out since `kept`
 };
 
-void see_point(Particle p); // each of them
-// Whether `last` is not left out, in the turn of point j, which is p.
+void see_point(Particle p); // called for each point
+// Whether `last` must be kept, in the turn of point j, which is p.
 bool ends_ribbon(Walk w, int j, Particle p);
-void put_joint(Walk w, int j, vec2 next); // `kept` lies between the directions `way` and `next`
+// Handles the joint at `kept`, between the directions `way` and `next`.
+void put_joint(Walk w, int j, vec2 next);
 
 int count_points()
 {
@@ -43,7 +44,7 @@ Walk walk_strand(int s, uint id)
     vec4 here_clip = clip_from_world * vec4(here, 1.0), before_clip = here_clip;
     Particle none = Particle(RibbonPoint(0.0, 0.0, 0.0, 0.0), vec3(0.0));
     Walk w = Walk(count_points(), paint_opacity(root), none, none, vec2(0.0), 0.0);
-    int lit = particle_address(s, 0, w.points); // where light at the strand's points has been found
+    int lit = particle_address(s, 0, w.points); // index of the light at the strand's points
 #if SHADOW
     float shadow_opacity = material.shadow_opacity * paint_opacity_share(root);
 #endif

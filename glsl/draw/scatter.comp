@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: MIT
-// Marschner's table: where light that has met a fibre goes by azimuth, once for all colours.
+// The table for Marschner shading: the azimuthal distribution of light that a fibre scatters, for
+// all colours.
 //
-// Seen along its axis the fibre is a disc of radius 1. Light at the inclination theta_d comes in
-// beside the middle at h = sin(gamma_i), goes on at gamma_t with sin(gamma_t) = h / eta', where by
-// Bravais' law eta' = sqrt(eta^2 - sin^2 theta_d) / cos theta_d, and after p chords leaves turned
-// by
+// Seen along its axis, the fibre is a disc of radius 1. Light with the inclination theta_d enters
+// at the offset h = sin(gamma_i) and continues at gamma_t with sin(gamma_t) = h / eta', where eta'
+// = sqrt(eta^2 - sin^2 theta_d) / cos theta_d by Bravais' law. After p chords it leaves, turned by
 //
 //   Phi(p, h) = 2 p gamma_t - 2 gamma_i + p pi
 //
-// with the share A(0) = F, A(p) = (1 - F)^2 F^(p-1) T^p of its power (Marschner et al. 2003): F
-// Fresnel's reflectance at the true angle, whose cosine is cos theta_d cos gamma_i, T what a chord
-// lets through. A chord is 2 cos(gamma_t) / cos(theta_t) long; by Beer and Lambert's law a fibre
-// whose diameter lets `color` through has T = color^(cos gamma_t / cos theta_t). The density by
+// It has the share A(0) = F, A(p) = (1 - F)^2 F^(p-1) T^p of the power (Marschner et al. 2003). F
+// is Fresnel's reflectance at the true angle, whose cosine is cos theta_d cos gamma_i. T is the
+// transmittance of a chord, which is 2 cos(gamma_t) / cos(theta_t) long; by Beer's law a fibre
+// whose diameter transmits `color` has T = color^(cos gamma_t / cos theta_t). The density over the
 // azimuth is
 //
 //   N(p, phi) = 1/2 integral over h from -1 to 1 of A(p, h) G(phi - Phi(p, h))
 //
-// G a Gaussian (d'Eon et al. 2011): no two beams ever meet in a line of infinite brightness, as
-// they do without it. All that leaves after more than two reflections inside, (1-F)^2 F^2 T^3 / (1
-// - F T), has lost its direction and goes everywhere alike, so that no light is lost.
+// G is a Gaussian (d'Eon et al. 2011). Without it the brightness would become infinite where
+// neighbouring beams meet (caustics). The light that leaves after more than two internal
+// reflections, (1-F)^2 F^2 T^3 / (1 - F T), is distributed evenly over all directions, so that no
+// light is lost.
 #include "common/shared_math.h"
 #include "draw/draw.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(location = 0) uniform vec2 fibre; // eta, standard deviation of G in rad (< pi / 2)
-layout(binding = 0, rgba16f) writeonly uniform image3D table; // R, TT, TRT and what comes later
+layout(binding = 0, rgba16f) writeonly uniform image3D table; // R, TT, TRT, further reflections
 
-const int STEPS = 64; // by gamma_i, in which all is smooth: dh = cos(gamma_i) d gamma_i
+const int STEPS = 64; // over gamma_i, in which the integrand is smooth: dh = cos(gamma_i) d gamma_i
 
 float fresnel(float eta, float cosine)
 {
@@ -36,7 +37,7 @@ float fresnel(float eta, float cosine)
     return 0.5 * (s * s + p * p);
 }
 
-// The Gaussian about 0 and about the other side of the circle.
+// The Gaussian around 0 and its repetition around the circle.
 float blur(float x, float width)
 {
     x = abs(x - 2.0 * PI * round(x / (2.0 * PI)));

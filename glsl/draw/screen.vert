@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A triangle over the whole picture, behind everything; scissors cut it.
+// A triangle that covers the whole picture at the far plane; scissors restrict it.
 
 void main()
 {

@@ -5,15 +5,14 @@
 //   MARSCHNER 0: Kajiya and Kay's   1, 2: Marschner's, see shade_marschner.glsl
 
 #include "draw/lights.glsl"
-#include "kernel/fibre.h" // here, as files are taken once, whether or not a condition holds
+#include "kernel/fibre.h" // here, because a file is included once, even if its #if is false
 #if MARSCHNER
 #include "draw/shade_marschner.glsl"
 #else
 #include "draw/shade_kajiya.glsl"
 #endif
 
-// What point `point` of a batch's curves, which lies at x, behind the particle at `at`, shows of
-// itself.
+// The colour of point `point` of a batch's curves, which lies at x, behind the particle at `at`.
 vec3 shade_particle(Fibre m, Painter painter, int at, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {
 #if AOV == 0
@@ -23,7 +22,7 @@ vec3 shade_particle(Fibre m, Painter painter, int at, int point, vec3 x, vec3 ta
 #elif AOV == 2
     return 0.5 + 0.5 * tangent;
 #else
-    uint bits = max(hash_bits(painter.id) & 0xffffffu, 1u); // black is no strand
+    uint bits = max(hash_bits(painter.id) & 0xffffffu, 1u); // black means that there is no strand
     return vec3(uvec3(bits, bits >> 8, bits >> 16) & 255u) / 255.0;
 #endif
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Kajiya and Kay's fibre (SIGGRAPH 1989) with the two highlights of Scheuermann (2004), as TressFX
-// has them (needs material.h, lights.glsl).
+// Kajiya and Kay's fibre (SIGGRAPH 1989) with the two highlights of Scheuermann (2004), as in
+// TressFX (needs material.h, lights.glsl).
 //
-// Light that comes in at the angle t to the fibre leaves on a cone about it. Scales on the fibre
-// tilt the first reflection's cone towards the root; light that has gone through the fibre and
-// been reflected inside leaves on a cone tilted towards the tip, coloured on its way.
+// Light that arrives at the angle t to the fibre leaves on a cone around it. Scales on the fibre
+// tilt the cone of the first reflection towards the root. Light that enters the fibre and is
+// reflected inside leaves on a cone tilted towards the tip, coloured on its way.
 
-// Read once: a uniform costs a load wherever it is named.
+// A local copy, because each use of a uniform costs a load.
 struct Fibre {
     float ambient, diffuse, specular1, exponent1, specular2, exponent2;
     vec2 shift1, shift2; // cosine and sine
@@ -20,7 +20,7 @@ Fibre fibre_material()
                  vec2(material.shift2_cos, material.shift2_sin));
 }
 
-// Linear RGB of a fibre of colour `base` at x along the unit tangent (root to tip), seen along the
+// Linear RGB of a fibre with the colour `base` at x, with the unit tangent (root to tip) and the
 // unit vector to the eye.
 vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Marschner et al.'s fibre (SIGGRAPH 2003): a rough glass cylinder with pigment inside (needs
-// material.h, lights.glsl). Three beams leave it: R, reflected outside; TT, gone through; TRT,
-// reflected inside. Of light from wi it sends towards wr, as the mean radiance over its width,
+// material.h, lights.glsl). Three beams leave it: R, reflected outside; TT, transmitted; TRT,
+// reflected inside. The share of light from wi that it scatters towards wr, as the mean radiance
+// over its width, is
 //
 //   f = sum over p of M_p(theta_i, theta_r) N_p(theta_d, phi)
 //
-// per unit of solid angle; theta is the inclination against the plane across the fibre, towards the
-// tip, phi the azimuth between both. N is tabulated (scatter.comp).
+// per unit of solid angle; theta is the inclination to the plane across the fibre, positive towards
+// the tip, phi the azimuth between both. N is tabulated (scatter.comp).
 //   MARSCHNER 1: energy   M is d'Eon et al.'s (2011) lobe of the variance v, with
 //     t = theta_r - 2 alpha for scales that tilt the lobe by alpha,
 //       M = exp(-sin(theta_i) sin(t) / v) I0(cos(theta_i) cos(t) / v) / (2 v sinh(1 / v)),
@@ -14,12 +15,12 @@
 //     pigment under light L from everywhere shows L.
 //   MARSCHNER 2: gauss   M is Marschner's Gaussian with the variance v,
 //       M = g(theta_i + theta_r - 2 alpha) cos(theta_i) / cos^2(theta_d),
-//     and theta_d = (theta_r - theta_i) / 2: light goes either way alike, but some is lost or made
-//     at grazing angles. (No tilted lobe can do both: a beam that leaves at another inclination has
-//     another width.)
-// Light that comes from other fibres and from the sky has been found before (light_grid.h) for the
-// hair's mean colour; what a strand's own colour scatters of it differs by its albedo.
-//   SCATTERED 1: so it is   0: nothing stands between the fibre and the sky
+//     and theta_d = (theta_r - theta_i) / 2: the lobe is reciprocal, but at grazing angles it loses
+//     or gains light. (A tilted lobe cannot be both normalised and reciprocal, because the width of
+//     a beam changes with its inclination.)
+// Light from other fibres and from the sky has been computed before (light_grid.h), for the hair's
+// mean colour. It is scaled by the strand's albedo over the mean albedo.
+//   SCATTERED 1: with this light   0: nothing occludes the sky for the fibre
 #include "kernel/fibre.h"
 
 layout(binding = BIND_SCATTER) uniform sampler3D scatter_table;
@@ -27,10 +28,10 @@ layout(binding = BIND_SCATTER) uniform sampler3D scatter_table;
 layout(binding = BIND_SCATTERED) uniform samplerBuffer scattered_light;
 #endif
 
-// Read once: a uniform costs a load wherever it is named.
+// A local copy, because each use of a uniform costs a load.
 struct Fibre {
     vec4 albedo, mean_albedo;                  // see material.h
-    vec3 sharpness, scale, tilt_cos, tilt_sin; // of R, TT, TRT
+    vec3 sharpness, scale, tilt_cos, tilt_sin; // for R, TT, TRT
 };
 
 Fibre fibre_material()
@@ -39,7 +40,8 @@ Fibre fibre_material()
                  material.lobe_scale.xyz, material.lobe_tilt_cos.xyz, material.lobe_tilt_sin.xyz);
 }
 
-// M of R, TT and TRT; `to` is the tilted theta_r as the model has it, found once for all lights.
+// M of R, TT and TRT. `to`: the tilted theta_r in the form that the model needs, computed once for
+// all lights.
 #if MARSCHNER == 2
 struct Outgoing {
     vec3 angle;
@@ -76,8 +78,7 @@ vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
 }
 #endif
 
-// The sum over R, TT and TRT of M, which is `along`, times N; x and y of `at` are those of the
-// table's nodes.
+// The sum over R, TT and TRT of M (`along`) times N. `at`: the place in the table, in nodes.
 vec3 azimuthal(vec2 at, float color)
 {
     const vec3 nodes = vec3(SCATTER_AZIMUTHS, SCATTER_INCLINATIONS, SCATTER_COLORS);
@@ -98,8 +99,8 @@ vec3 albedo_of(Fibre m, vec3 base)
                 fibre_albedo(base.b, m.albedo.x, m.albedo.y));
 }
 
-// Linear RGB of a fibre at x, where point `point` of a batch lies, whose diameter lets `base` of
-// white light through, along the unit tangent (root to tip), seen along the unit vector to the eye.
+// Linear RGB of a fibre at x, at point `point` of a batch. `base`: share of white light that the
+// fibre's diameter transmits; `tangent`: unit, root to tip; `to_eye`: unit.
 vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_eye)
 {
     float sin_r = clamp(dot(tangent, to_eye), -1.0, 1.0), cos_r = fibre_sine_of(sin_r);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How much of a light reaches a point (needs shadow.h).
-//   SHADOW 0: all   1: approximated deep shadow map, as TressFX has it   2: deep opacity map
-//   SHADOW_BY_MESH 1: the mesh throws shadows, too
-//   LIGHT_COUNT, SHADOW_MAPS: how many lights and maps, so that loops over them are unrolled; 0:
+// The share of a light that reaches a point (needs shadow.h).
+//   SHADOW 0: all of it   1: approximated deep shadow map, as in TressFX   2: deep opacity map
+//   SHADOW_BY_MESH 1: the mesh casts shadows, too
+//   LIGHT_COUNT, SHADOW_MAPS: numbers of lights and maps, so that loops over them are unrolled; 0:
 //       any number
 #ifndef LIGHT_COUNT
 #define LIGHT_COUNT 0
@@ -25,7 +25,7 @@ layout(binding = BIND_SHADOW_MESH) uniform sampler2D shadow_mesh;
 
 int shadow_side = shadow_params.side;
 
-// Of the fibre that is asked for: diameter (m) and opacity to light; 0 for the mesh.
+// The fibre whose shadow is looked up: diameter (m) and opacity to light; 0 for the mesh.
 vec2 shadow_fibre = vec2(0.0);
 
 #if SHADOW == 2
@@ -77,17 +77,17 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 #endif
 
 #if SHADOW_BY_MESH
-// Texels each way that a point looks at: an even number, since four are fetched at once.
+// Texels that a point samples along each axis: an even number, because four are fetched at once.
 #ifndef MESH_TAPS
 #define MESH_TAPS 2
 #endif
 
-// The depths of 2 x 2 texels of a map, the first of which is at `first`: those of the second row,
-// then, from right to left, of the first, as textureGather has them.
+// The depths of 2 x 2 texels of a map beginning at `first`, in the order of textureGather: the
+// second row, then the first row from right to left.
 vec4 mesh_depths(int map, ivec2 first)
 {
     int row = map * shadow_params.mesh_side + first.y;
-    vec2 corner = vec2(first.x + 1, row + 1); // that the four share
+    vec2 corner = vec2(first.x + 1, row + 1); // the corner that the four texels share
     return textureGather(shadow_mesh, corner / vec2(textureSize(shadow_mesh, 0)), 0);
 }
 
@@ -97,7 +97,8 @@ float light_past_mesh(int map, vec3 x)
     vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
     float side = float(shadow_params.mesh_side), taps = float(MESH_TAPS);
     place.xyz /= place.w;
-    float depth = min(place.z - shadow_params.place[map].z, 1.0); // what lies behind all of the map
+    // Points behind the map's range get its far end.
+    float depth = min(place.z - shadow_params.place[map].z, 1.0);
     vec2 from = vec2(left_from(place.x, side, taps), left_from(place.y, side, taps)),
          first = floor(from), share = from - first;
     float sum = 0.0;
@@ -119,8 +120,8 @@ float light_past_mesh(int map, vec3 x)
 #endif
 
 #if SHADOW
-// What hair leaves of a map's light at x: all of it beside the map, and behind a lamp, which has
-// none there.
+// The share of a map's light that hair lets through to x. It is 1 outside the map and behind a
+// lamp, where there is no map.
 float hair_leaves(int map, vec3 x)
 {
     CasterPlace place = caster_place(shadow_params.from_world[map], x.x, x.y, x.z);
@@ -130,7 +131,7 @@ float hair_leaves(int map, vec3 x)
     return beside ? 1.0 : left;
 }
 
-// Of each light what is left at the point of the last shadow_find; whole where it has no map.
+// The share of each light that reaches the point of the last shadow_find; 1 without a map.
 float shadow_left[MAX_LIGHTS] = float[MAX_LIGHTS](1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
 #if SHADOW_MAPS
 const int shadow_maps = SHADOW_MAPS;
@@ -141,15 +142,15 @@ int shadow_maps = shadow_params.maps;
 void shadow_keep(int light, float left)
 {
 #if LIGHT_COUNT
-    // An array whose every place is known when compiling stays in registers.
+    // An array that is only indexed by constants stays in registers.
     for (int i = 0; i < LIGHT_COUNT; ++i) shadow_left[i] = i == light ? left : shadow_left[i];
 #else
     shadow_left[light] = left;
 #endif
 }
 
-// Finds what is left of all lights at x, a turn for each map: CPU drivers run both sides of every
-// `if`, so that lights without a map would cost as much as those with one.
+// Finds the share of all lights that reaches x, one turn for each map. CPU drivers execute both
+// sides of an `if`, so a loop over lights would cost as much for lights without a map.
 void shadow_find(vec3 x)
 {
     for (int map = 0; map < shadow_maps; ++map) {
@@ -163,7 +164,7 @@ void shadow_find(vec3 x)
 }
 #endif
 
-// Share of light `light` that reaches the point.
+// The share of light `light` that reaches the point.
 float light_left(int light)
 {
 #if SHADOW

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Parameters with which shadow maps are made and read. A light's map has SHADOW_SIDE x SHADOW_SIDE
-// texels across the light.
+// Parameters for making and reading shadow maps. A light's map has SHADOW_SIDE x SHADOW_SIDE texels
+// across the light.
 #include "common/shared_math.h"
 #include "draw/draw.h"
 #ifdef __STDC__
 #pragma once
 #endif
 
-#define SHADOW_COARSE 4        // texels: side of a texel of the map of first depths
-#define SHADOW_DEPTHS 16777215 // steps from the first depth that there can be to the last
+#define SHADOW_COARSE 4        // texels that a texel of the map of first depths is wide
+#define SHADOW_DEPTHS 16777215 // integer steps of the depth range
 
 #define BIND_SHADOW 3 // uniform block
 #define BIND_CAST   4 // uniform block, in the passes that make maps
@@ -18,7 +18,7 @@
 #define BIND_FIRST_OUT  1 // uint a texel: first depth
 #define BIND_SUMS_OUT   2 // uint a layer and texel
 #define BIND_LAYERS_OUT 3 // uint a layer and texel: see pack_layer
-#define BIND_DEPTHS_OUT 4 // float a texel: where the layers begin
+#define BIND_DEPTHS_OUT 4 // float a texel: the depth at which the layers begin
 
 // Textures.
 #define BIND_FIRST       4
@@ -27,31 +27,30 @@
 #define BIND_DEPTHS      12
 #define BIND_SHADOW_MESH 13
 
-// Of each map the light's view, by the rows of a matrix that a point (x, y, z, 1) is multiplied
-// with.
+// The view of each map's light, as rows of a matrix to multiply with a point (x, y, z, 1).
 UNIFORM_BLOCK(ShadowParams, shadow_params, BIND_SHADOW)
 {
-    mat4 from_world[MAX_LIGHTS];      // u, v (texels of the map) times w; depth 0..1 of the hair; w
+    mat4 from_world[MAX_LIGHTS];      // u, v (texels) times w; depth 0..1 over the hair; w
     mat4 mesh_from_world[MAX_LIGHTS]; // u, v (texels of the mesh's map), depth 0..1, all times w; w
-    vec4 place[MAX_LIGHTS];           // the light's number; metres of depth; depth that the
-                                      // mesh's map is moved by; texels in a metre across, about
+    vec4 place[MAX_LIGHTS]; // number of the light; depth range in m; depth bias of the mesh's map;
+                            // texels in a metre across, approximately
     int maps;
     int side, mesh_side; // texels
-    float fibres;        // approx: fibres in a metre along the light
-    float passed;        // approx: share of the light that a fibre lets through, as a power of 2
-    float mesh_lift;     // m: how far the mesh is moved along its normals where it receives light
+    float fibres;        // approx: fibres per metre along the light
+    float passed;        // approx: log2 of a fibre's transmittance
+    float mesh_lift;     // m: bias of points on the mesh along their normals
 }
 END_BLOCK(ShadowParams, shadow_params);
 
-// One light before which hair stands; what the hair is like tells material.h.
+// A map that hair is drawn into. material.h describes the hair.
 UNIFORM_BLOCK(CastParams, cast_params, BIND_CAST)
 {
-    mat4 from_world; // see above, of the light in turn
+    mat4 from_world; // as above, for this map's light
     int side;        // texels
-    int map;         // number
-    float unit;      // of sums: steps for one fibre
-    float texels;    // in a metre across the light (a perspective one: at w = 1)
-    float reach;     // greatest u and v that a bound may have
-    float limit;     // no coordinate in the world is beyond this, m: others are broken
+    int map;         // index of the map
+    float unit;      // steps of the sums for one fibre
+    float texels;    // texels per metre across the light (for a lamp at w = 1)
+    float reach;     // limit of |u| and |v| for bounding boxes
+    float limit;     // m: positions with a larger coordinate are broken
 }
 END_BLOCK(CastParams, cast_params);

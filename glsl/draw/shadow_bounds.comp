@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The box of all particles of hair as the light sees it: (u, v, depth). Curves can leave it a
-// little; the margins of a map hold them.
+// The bounding box of all particles of hair in the light's view: (u, v, depth). Curves can leave it
+// slightly; the map's margins have room for that.
 #include "draw/shadow.h"
 #include "draw/material.h"
 #include "common/hair_address.glsl"
@@ -10,7 +10,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
-layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; }; // six a map
+layout(std430, binding = BIND_BOUNDS_OUT) buffer Bounds { int bounds[]; }; // six for each map
 
 void main()
 {

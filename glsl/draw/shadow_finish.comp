@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Smooths each layer's sums with the neighbouring texels (weights 1 2 1 along each axis), and adds
-// them up over the layers. A lane goes down a column of STRIP texels, so that the sum of a row is
-// computed once for three texels.
+// Smooths each layer's sums with the neighbouring texels (weights 1 2 1 along each axis), and sums
+// up the layers. A lane processes a column of STRIP texels from top to bottom, so that the sum of a
+// row is computed once for three texels.
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The head or body as the light sees it.
+// The head or body in the light's view.
 #include "draw/shadow.h"
 #include "common/rigid.glsl"
 

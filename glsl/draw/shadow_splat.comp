@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws strands into a shadow map, as points along their segments and, where these are wide, across
+// Draws strands into a shadow map, as points along their segments and, if these are wide, across
 // them.
 //   DEEP 0: the map keeps first depths   1: mean numbers of fibres in layers
 //   COARSE 1: first depths of a coarse map
@@ -31,7 +31,7 @@ const float DENSITY = CASTER_COARSE, WIDE_DENSITY = CASTER_FIRST_WIDE, SLACK = C
 #else
 const float DENSITY = CASTER_FIRST, WIDE_DENSITY = CASTER_FIRST_WIDE, SLACK = 0.0;
 #endif
-// Points on a segment: CPU drivers end loops silently after 65,535 turns of a lane.
+// Limits the points of a segment: llvmpipe silently ends loops after 65,535 iterations of a lane.
 const float MOST = 60000.0 / float(PART_SEGMENTS);
 
 float point_radius(Painter painter, Curve curve, int k)
@@ -48,7 +48,7 @@ void main()
     int begin = int(gl_WorkGroupID.z) * PART_SEGMENTS;
     int end = min(begin + PART_SEGMENTS, curve.segments * curve.parts);
     if (s >= int(material.drawn_strands) || begin >= end) return;
-    Painter painter = paint_strand(0u, n); // no colour is asked for
+    Painter painter = paint_strand(0u, n); // the colour is not used
     if (s == int(material.last_strand)) painter.radius *= material.last_share;
     float opacity = material.shadow_opacity * paint_opacity_share(root);
     float texels = cast_params.texels, unit = cast_params.unit, edge = float(side) - 0.5;
@@ -80,7 +80,7 @@ void main()
             if (inside) atomicAdd(sums[map * SHADOW_LAYERS + layer * side * side + place], part);
 #else
             uint depth = uint(int(clamp(at.z, 0.0, 1.0) * float(SHADOW_DEPTHS)));
-            // A load costs a quarter.
+            // Reading first saves most atomics; a read costs a quarter of an atomic.
             if (inside && depth < first[map + place]) atomicMin(first[map + place], depth);
 #endif
             ++column;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The depth at which the layers of each texel begin: a smooth lower bound of the first depths. It
-// is the least of 3 x 3 texels of the coarse map, interpolated between texels. No hair lies before
-// it, because a texel lies among four coarse texels whose 3 x 3 squares all contain its own coarse
-// texel. A lane has the texels among four coarse ones.
+// is the minimum of 3 x 3 texels of the coarse map, interpolated between texels. No hair lies in
+// front of it, because a texel lies among four coarse texels whose 3 x 3 squares all contain its
+// own coarse texel. A lane processes the texels among four coarse texels.
 #include "draw/shadow.h"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -24,7 +24,7 @@ float first_at(ivec2 texel)
 void main()
 {
     int at = lane_index();
-    // The lower left one of the four.
+    // The lower left of the four coarse texels.
     ivec2 corner = ivec2(at % (coarse + 1), at / (coarse + 1)) - 1;
     if (corner.y >= coarse) return;
     float least[4] = float[4](1.0, 1.0, 1.0, 1.0);

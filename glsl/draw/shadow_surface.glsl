@@ -2,8 +2,8 @@
 // Shadows on surfaces. Each map is read only where its light can shine on the surface and something
 // can block it (needs lights.glsl). CPU drivers execute both sides of an `if`, but they end a loop
 // when no lane needs another turn; so loops of at most one turn are used as conditions.
-//   SHADOW_WRAP: the greatest cosine below the horizon at which light still counts. Up to the same
-//       cosine above the horizon a surface's own shadow, which is jagged there, is faded in.
+//   SHADOW_WRAP: light counts up to this cosine below the horizon. Up to the same cosine above the
+//       horizon the surface's own shadow, which is jagged there, is faded in.
 #ifndef SHADOW_WRAP
 #define SHADOW_WRAP 0.0
 #endif
@@ -14,7 +14,7 @@ bool shadow_covers(vec2 texel, int side)
     return all(greaterThanEqual(texel, vec2(0.0))) && all(lessThanEqual(texel, vec2(side)));
 }
 
-// As shadow_find, for a surface at x with the unit normal n.
+// Like shadow_find, for a surface at x with the unit normal n.
 void shadow_find_on(vec3 x, vec3 n)
 {
     for (int map = 0; map < shadow_maps; ++map) {

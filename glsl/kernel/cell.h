@@ -5,38 +5,39 @@
 #pragma once
 #endif
 
-// Some strands stand for all in the cells: of `drawn` strands one of each `step` that follow each
-// other, any one, but always the same.
+// Some strands represent all strands in the cells: of each group of `step` consecutive strands one,
+// chosen pseudo-randomly but always the same. Returns the number of such strands.
 SHARED_FUNCTION uint cell_strands(uint drawn, uint step)
 {
     return step < drawn ? drawn / step : 1u;
 }
 
-// The strand number n of them: a step of the golden ratio's multiples spreads them evenly, whatever
-// order strands have.
+// The strand that represents group n. Multiples of the golden ratio spread the choices evenly,
+// whatever order the strands have.
 SHARED_FUNCTION uint cell_strand(uint n, uint drawn, uint step)
 {
     return n * step + ((n * 0x9e3779b1u) >> 16) % (step < drawn ? step : drawn);
 }
 
-// What a cell's light shows of a fibre is tabled by tangents: an octahedron with CELL_SIDE squares
-// across, cut into patches of 3 x 3 squares with a node at each corner, each with nodes of its own.
+// The table of the light that a fibre sends to the eye is indexed by its tangent: an octahedron of
+// CELL_SIDE x CELL_SIDE squares, cut into patches of 3 x 3 squares. A patch has its own copies of
+// the nodes at the corners of its squares.
 #define CELL_SIDE        30
 #define CELL_PATCH_SIDE  3   // squares
 #define CELL_PATCH_ROW   4   // nodes
-#define CELL_PATCH_NODES 16  // of a patch: [row][column]
+#define CELL_PATCH_NODES 16  // nodes of a patch: [row][column]
 #define CELL_PATCHES_ROW 10  // CELL_SIDE / CELL_PATCH_SIDE
 #define CELL_PATCHES     100 // [row][column]
 
-// Where a tangent lies among the nodes: the first of the four around it, and the shares of those
-// beyond it along a row (u) and a column (v).
+// The place of a tangent among the nodes: the first of the four around it, and its fractions along
+// the row (u) and the column (v).
 SHARED_STRUCT(CellTangent)
 {
     int in_patch, node;
     float u, v;
 };
 
-// Of a vector of any length.
+// `x`, `y`, `z`: a vector of any length.
 SHARED_FUNCTION CellTangent cell_tangent(float x, float y, float z)
 {
     float scale = 1.0f / SHARED_MAX(SHARED_ABS(x) + SHARED_ABS(y) + SHARED_ABS(z), 1e-12f);
@@ -58,8 +59,8 @@ SHARED_FUNCTION CellTangent cell_tangent(float x, float y, float z)
     return at;
 }
 
-// --- Light on its way through a cell: out = S + (in - S) exp(-tau), in the mean of the cell
-// S + (in - S) (1 - exp(-tau)) / tau.
+// --- Light on its way through a cell with the source S: out = S + (in - S) exp(-tau); the cell's
+// mean is S + (in - S) (1 - exp(-tau)) / tau.
 
 SHARED_FUNCTION float cell_left(float tau)
 {
@@ -71,36 +72,37 @@ SHARED_FUNCTION float cell_mean_share(float tau, float left)
     return tau > 1e-3f ? (1.0f - left) / tau : 1.0f - 0.5f * tau;
 }
 
-// --- Orders of scattering: of two after each other what hair meets falls by a factor, and goes on
-// falling so. So much of the light at most may be left to orders that are not swept.
+// --- Orders of scattering. The light that hair meets falls by a factor from one order to the next,
+// and is assumed to go on falling by this factor. At most this share of the light may be left to
+// orders that are not swept.
 #define CELL_LEFT_MOST 0.05f
 
-// The factor, of a channel.
+// The factor for a channel.
 SHARED_FUNCTION float cell_falling(float before, float last)
 {
     return before > 0.0f ? SHARED_MIN(last / before, 0.95f) : 0.0f;
 }
 
-// What all orders after the last one add, over what it has.
+// The light of all orders after the last one, over the light of the last one.
 SHARED_FUNCTION float cell_further(float falling) { return falling / (1.0f - falling); }
 
-// Whether it is too much; `all`: of those so far.
+// Whether more orders must be swept; `all`: the light of the orders so far.
 SHARED_FUNCTION bool cell_needs_more(float all, float last, float falling)
 {
     float left = last * cell_further(falling);
     return left > CELL_LEFT_MOST * (all + left);
 }
 
-// --- What is seen.
+// --- Visible cells.
 
-// Fibres between the eye and a cell, but for those of the cell and of its neighbours, beyond which
-// a share of 1e-3 of hair is seen.
+// A cell counts as hidden if this many fibres lie between the eye and the cell, without the fibres
+// of the cell and its neighbours: then less than 1e-3 of its hair is visible.
 #define CELL_HIDDEN_BEHIND 7.0f
 
 SHARED_STRUCT(CellVector) { float x, y, z; };
 
-// Turns a tangent by the smallest rotation from the way to the eye (of any length) to the unit
-// vector `axis`, which tables are for.
+// Rotates a tangent by the smallest rotation that takes the direction `way` (of any length) to the
+// unit vector `axis`, for which the tables are made.
 SHARED_FUNCTION CellVector cell_turn(CellVector tangent, CellVector way, CellVector axis)
 {
     float scale =
@@ -118,9 +120,9 @@ SHARED_FUNCTION CellVector cell_turn(CellVector tangent, CellVector way, CellVec
     return turned;
 }
 
-// --- Classes of tangents (ordinates.h), by the squares of a cube's faces.
+// --- Classes of tangents (ordinates.h), by squares on the faces of a cube.
 
-// The row or column of a place -1 .. 1 across a face with so many.
+// The row or column of a coordinate -1 .. 1 on a face that has `squares` rows and columns.
 SHARED_FUNCTION int cell_square(float at, int squares)
 {
     int square = INT(SHARED_MAX(0.5f * (at + 1.0f) * FLOAT(squares), 0.0f));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Smooth curves through a strand's particles, for shaders and for vectorised C. A point of a
-// segment is its first end plus a weighted sum of three vectors: from the particle before to the
-// first end, along the segment, and from its last end to the particle after. Before the root and
-// behind the tip the missing neighbour is mirrored; its vector is that of the segment.
+// segment is the segment's first end plus a weighted sum of three vectors: from the particle before
+// to the first end, along the segment, and from its last end to the particle after. At the root and
+// the tip the missing neighbour is mirrored: its vector is that of the segment.
 #ifdef __STDC__
 #pragma once
 #endif
@@ -10,10 +10,11 @@
 
 SHARED_STRUCT(CurveWeights)
 {
-    float before, own, after; // of the ways
+    float before, own, after; // weights of the three vectors
 };
 
-// The uniform cubic B-spline at t (0 to 1) of the segment, its four weights' sum taken out.
+// The uniform cubic B-spline at t (0 to 1) of the segment. Its four weights are rewritten for the
+// three vectors.
 SHARED_FUNCTION CurveWeights curve_spline(float t)
 {
     float s = 1.0f - t;
@@ -24,13 +25,15 @@ SHARED_FUNCTION CurveWeights curve_spline(float t)
     return weights;
 }
 
-// Catmull-Rom with centripetal knots: their distance is the root of the particles'.
+// Catmull-Rom with centripetal knots: the distance of knots is the square root of the distance of
+// particles.
 SHARED_FUNCTION float curve_knot(float x, float y, float z)
 {
     return SHARED_MAX(SHARED_SQRT(SHARED_SQRT(x * x + y * y + z * z)), 1e-9f);
 }
 
-// What the tangents at both ends are made of: the segment's knots' distance over those beside it.
+// Ratios that the tangents at both ends are made of: the segment's knot distance over a neighbour's
+// (before, after), and over the sum of both (from, to).
 SHARED_STRUCT(CurveKnots) { float before, from, to, after; };
 
 SHARED_FUNCTION CurveKnots curve_knots(float before, float own, float after)
@@ -43,8 +46,8 @@ SHARED_FUNCTION CurveKnots curve_knots(float before, float own, float after)
     return knots;
 }
 
-// Tangents are those of the parabolas through three knots (Barry and Goldman 1988), over the
-// segment's own distance.
+// Tangents of the parabolas through three knots (Barry and Goldman 1988), times the segment's knot
+// distance.
 SHARED_FUNCTION CurveWeights curve_tangent_from(CurveKnots knots)
 {
     CurveWeights weights;
@@ -63,7 +66,7 @@ SHARED_FUNCTION CurveWeights curve_tangent_to(CurveKnots knots)
     return weights;
 }
 
-// Hermite's curve of those tangents.
+// The Hermite curve with these tangents.
 SHARED_FUNCTION CurveWeights curve_hermite(CurveKnots knots, float t)
 {
     float s = 1.0f - t, end = (3.0f - 2.0f * t) * t * t, by_from = t * s * s, by_to = -t * t * s;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The light that a fibre sends to the eye, for shaders and for vectorised C. shade_marschner.glsl
-// and shade_kajiya.glsl describe the models.
+// The light that a fibre scatters to the eye, for shaders and for vectorised C.
+// shade_marschner.glsl and shade_kajiya.glsl describe the models.
 #ifdef __STDC__
 #pragma once
 #endif
 #include "common/shared_math.h"
 
-// Of the sine of an inclination its cosine, or the other way round.
+// The cosine of an inclination from its sine, or the sine from the cosine.
 SHARED_FUNCTION float fibre_sine_of(float cosine)
 {
     return SHARED_SQRT(SHARED_MAX(1.0f - cosine * cosine, 0.0f));
 }
 
-// acos(x) / pi for -1 <= x <= 1, 1e-8 off (Abramowitz and Stegun 4.4.46).
+// acos(x) / pi for -1 <= x <= 1, with an error of 1e-8 (Abramowitz and Stegun 4.4.46).
 SHARED_FUNCTION float fibre_turn(float x)
 {
     float a = SHARED_ABS(x), series = -0.0012624911f;
@@ -36,8 +36,8 @@ SHARED_FUNCTION float fibre_bessel(float x)
            (SHARED_SQRT(SHARED_SQRT(1.0f + 0.25f * square)) * (1.0f + 0.43023f * square));
 }
 
-// d'Eon et al.'s lobe (2011) of the variance v = 1 / sharpness about the cone that mirrors theta_i,
-// with scale = 1 / (v (1 - exp(-2/v))); `sine` and `cosine` are those of the tilted theta_r.
+// The lobe of d'Eon et al. (2011) with the variance v = 1 / sharpness around the cone that mirrors
+// theta_i; scale = 1 / (v (1 - exp(-2/v))). `sine` and `cosine` belong to the tilted theta_r.
 SHARED_FUNCTION float fibre_lobe(float sin_i, float cos_i, float sine, float cosine,
                                  float sharpness, float scale)
 {
@@ -46,7 +46,8 @@ SHARED_FUNCTION float fibre_lobe(float sin_i, float cos_i, float sine, float cos
            fibre_bessel(c * sharpness);
 }
 
-// Marschner's Gaussian of the variance 1 / sharpness in theta_i + theta_r, `off` its tilted middle.
+// Marschner's Gaussian in theta_i + theta_r with the variance 1 / sharpness. `off`: theta_i +
+// theta_r minus the tilt.
 SHARED_FUNCTION float fibre_gauss(float off, float sharpness, float cos_i, float cos_d)
 {
     return SHARED_SQRT(sharpness * FLOAT(0.5 / PI)) *
@@ -54,8 +55,8 @@ SHARED_FUNCTION float fibre_gauss(float off, float sharpness, float cos_i, float
            SHARED_MAX(cos_d * cos_d, 1e-6f);
 }
 
-// The cosine of the azimuth between light and eye, of the sines and cosines of their inclinations
-// and `dot`, the cosine between them.
+// The cosine of the azimuth between light and eye, from the sines and cosines of their inclinations
+// and from `dot`, the cosine of the angle between them.
 SHARED_FUNCTION float fibre_cos_phi(float dot, float sin_i, float cos_i, float sin_r, float cos_r)
 {
     float cosine = (dot - sin_i * sin_r) / SHARED_MAX(cos_i * cos_r, 1e-6f);
@@ -69,15 +70,15 @@ SHARED_FUNCTION float fibre_cos_d(float sin_i, float cos_i, float sin_r, float c
     return SHARED_SQRT(SHARED_MIN(SHARED_MAX(square, 0.0f), 1.0f));
 }
 
-// The share of light square to a fibre that it scatters, whose diameter lets `color` through, by
-// the two numbers of fibre_lobes_fit_albedo.
+// The share of perpendicular light that a fibre scatters if its diameter transmits `color`. `low`
+// and `power` come from fibre_lobes_fit_albedo.
 SHARED_FUNCTION float fibre_albedo(float color, float low, float power)
 {
     return low + (1.0f - low) * SHARED_POW(SHARED_MIN(color, 1.0f), power);
 }
 
-// How near the eye is to the cone that lies mirrored to the light and turned by a small angle
-// (Kajiya's highlights): the cosine of the angle between, where it is not negative.
+// How near the eye is to the reflected cone that is tilted by a small angle (Kajiya's highlights):
+// the cosine of the angle between them, 0 if negative.
 SHARED_FUNCTION float fibre_highlight(float light, float light_sine, float eye, float eye_sine,
                                       float turn_cos, float turn_sin)
 {

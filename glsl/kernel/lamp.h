@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Light at a point of a surface: from a lamp, from a directional light, and from everywhere. Each
+// The light at a point of a surface: from a lamp, from a directional light, and ambient light. Each
 // function takes one channel or all.
 #include "common/shared_math.h"
 #ifdef __STDC__
 #pragma once
 #endif
 
-#define LAMP_NEAREST 1e-12f // m2: squares of distances are at least so large
+#define LAMP_NEAREST 1e-12f // m2: lower limit of squared distances
 
-// The share of a light's colour that a surface square to it is given. `far`: 0 for a sun, which has
-// no distance; 1: `square` is its distance's (m2), `reference` that of the distance where the
-// light has its intensity; a cap keeps the share finite. The cone's edge as glTF's
-// KHR_lights_punctual has it: cone_from - cone_by * cosine, of the spot's axis and the way to the
-// light, cut to 0 .. 1.
+// The share of a light's colour that a surface perpendicular to it receives. `far`: 0 for a
+// directional light, 1 for a lamp. `square` is the squared distance to the lamp (m2), `reference`
+// the squared distance at which it has its intensity; the share is capped. The edge of a spot's
+// cone is as in glTF's KHR_lights_punctual: cone_from - cone_by * cosine, clamped to 0 .. 1, where
+// `cosine` is between the spot's axis and the direction to the light.
 SHARED_FUNCTION float lamp_share(float far, float square, float reference, float cone_from,
                                  float cone_by, float cosine)
 {
@@ -21,16 +21,16 @@ SHARED_FUNCTION float lamp_share(float far, float square, float reference, float
     return falloff * inside * inside;
 }
 
-// The mean light from everywhere, `sky` above and `ground` below, on a surface whose unit normal
-// has this y.
+// The mean ambient light, from `sky` above to `ground` below, on a surface whose unit normal has
+// this y.
 SHARED_FUNCTION float lamp_around(float sky, float ground, float up)
 {
     return ground + (0.5f + 0.5f * up) * (sky - ground);
 }
 
-// What a surface of a colour shows of the light from everywhere, over what it would if it were
-// white and open, where it sees the share `open` of the sky, the rest of it being of about the same
-// colour and as bright: what that reflects comes in, too.
+// The ambient light that a surface of this colour shows, over what a white, unoccluded surface
+// would show. It sees the share `open` of the sky; the rest of its view is assumed to have about
+// its own colour and brightness and to reflect light on it.
 SHARED_FUNCTION float lamp_around_into(float open, float color)
 {
     return open / (1.0f - color * (1.0f - open));

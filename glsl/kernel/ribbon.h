@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A strand on the screen: its points, which of them may be left out, and the ribbons between the
-// rest. For shaders and for vectorised C. Lengths are in px.
+// A strand on the screen: its points, the test whether a point can be left out, and the ribbons
+// between the kept points. For shaders and for vectorised C. Lengths are in px.
 //   REAL: float, or in GLSL a vector of pixels
 #ifdef __STDC__
 #pragma once
@@ -10,22 +10,23 @@
 #define REAL float
 #endif
 
-#define RIBBON_LEAST_OPACITY  (1.0f / 4096.0f) // what is clearer is not drawn
-#define RIBBON_LEAST_COVERAGE (1.0f / 512.0f)  // of a pixel, by which a ribbon is its nearest one
-#define RIBBON_LEAST_THROUGH  (1.0f / 1024.0f) // share of what stands behind that still counts
-#define RIBBON_STRAIGHT       0.05f            // px that a point may be off what stands in for it
-#define RIBBON_FOLD           0.25f  // of 1 + d0.d1: a joint that is more of a fold has no mitre
-#define RIBBON_JOINT          512.0f // length of a joint's bound, times 2 at most
+#define RIBBON_LEAST_OPACITY  (1.0f / 4096.0f) // strands with less opacity are not drawn
+#define RIBBON_LEAST_COVERAGE (1.0f / 512.0f)  // a pixel's nearest ribbon covers at least this
+#define RIBBON_LEAST_THROUGH  (1.0f / 1024.0f) // pixels with less transmittance count as opaque
+#define RIBBON_STRAIGHT       0.05f            // px: most that a left-out point is off the ribbon
+#define RIBBON_FOLD           0.25f  // joints with less than this 1 + d0.d1 fold and have no mitre
+#define RIBBON_JOINT          512.0f // a joint's bound is up to twice this long
 
 SHARED_STRUCT(RibbonPoint)
 {
     float x, y;
-    float inverse_w;  // 1/m before the eye; 0: not in sight
+    float inverse_w;  // 1/m, of the distance from the eye; 0: not visible
     float half_width; // px
 };
 
-// A point (x, y, w of clip space) of a strand of this radius (m), in an image of width x height px;
-// what lies before the near plane is not in sight. `focal`: px that a metre has at a distance of 1.
+// Projects a point (x, y, w in clip space) of a strand with this radius (m), in an image of width x
+// height px. Points in front of the near plane are not visible. `focal`: px of one metre at a
+// distance of one metre.
 SHARED_FUNCTION RibbonPoint ribbon_project(float x, float y, float w, float radius, float width,
                                            float height, float near_distance, float focal)
 {
@@ -38,7 +39,8 @@ SHARED_FUNCTION RibbonPoint ribbon_project(float x, float y, float w, float radi
     return p;
 }
 
-// Where on the way from a to b, 0 .. 1, a straight ribbon has what stands in the place of `p`.
+// The place on the way from a to b (0 .. 1) of the point of a straight ribbon that would replace
+// `p`.
 SHARED_FUNCTION float ribbon_share(RibbonPoint a, RibbonPoint p, RibbonPoint b)
 {
     float chord_x = b.x - a.x, chord_y = b.y - a.y, arm_x = p.x - a.x, arm_y = p.y - a.y;
@@ -47,8 +49,8 @@ SHARED_FUNCTION float ribbon_share(RibbonPoint a, RibbonPoint p, RibbonPoint b)
     return SHARED_MIN(SHARED_MAX(share, 0.0f), 1.0f);
 }
 
-// How far `p` is from what stands in its place if the ribbon runs straight from a to b: 1 is as
-// much as may be.
+// How far `p` is from the point that replaces it if the ribbon runs straight from a to b: in place,
+// depth and width. 1 is the most that is allowed.
 SHARED_FUNCTION float ribbon_bend(RibbonPoint a, RibbonPoint p, RibbonPoint b)
 {
     float t = ribbon_share(a, p, b);
@@ -63,26 +65,26 @@ SHARED_FUNCTION float ribbon_bend(RibbonPoint a, RibbonPoint p, RibbonPoint b)
     return SHARED_MAX(x, w);
 }
 
-// A cylinder's outline seen off the optical axis is wider: where its tangent planes through the eye
-// cut the screen at the distance q from the axis, by sqrt(1 + (q/focal)^2). (x, y) of any length
-// lies along the ribbon, (off_x, off_y) is the way from the axis to the point.
+// Off the optical axis a cylinder's outline is wider: by sqrt(1 + (q/focal)^2), where q is the
+// distance from the axis at which the cylinder's tangent planes through the eye cut the screen. (x,
+// y): a vector of any length along the ribbon; (off_x, off_y): from the axis to the point.
 SHARED_FUNCTION float ribbon_widening(float x, float y, float off_x, float off_y, float focal)
 {
     float q = (x * off_y - y * off_x) / (SHARED_SQRT(SHARED_MAX(x * x + y * y, 1e-12f)) * focal);
     return SHARED_SQRT(1.0f + q * q);
 }
 
-// --- Ends. Beyond a joint of two ribbons lies what is on the positive side of its bound, the sum
-// of both directions; see block.glsl.
+// --- Ends. At a joint of two ribbons, the bound is the sum of both directions. Points on its
+// positive side lie beyond the joint; see block.glsl.
 
 SHARED_STRUCT(RibbonBound)
 {
     float x, y;
-    float offset; // the share beyond is clamp(distance along the bound + this, 0, 1)
+    float offset; // the share beyond the end is clamp(distance along the bound + offset, 0, 1)
 };
 
-// The bound of a ribbon of the unit direction (x, y) at the end where one of the direction
-// (other_x, other_y) joins it, which is 0 where there is none.
+// The bound of a ribbon with the unit direction (x, y) at the end where a ribbon with the direction
+// (other_x, other_y) joins it. The other direction is 0 at a free end.
 SHARED_FUNCTION RibbonBound ribbon_bound(float x, float y, float other_x, float other_y)
 {
     bool apart = other_x * other_x + other_y * other_y < 0.25f,
@@ -94,7 +96,7 @@ SHARED_FUNCTION RibbonBound ribbon_bound(float x, float y, float other_x, float 
     return bound;
 }
 
-// How far beyond an end the bound lets pixels be, for a ribbon that reaches so far across.
+// How far beyond an end pixels may be covered, for a ribbon that reaches `reach` across.
 SHARED_FUNCTION float ribbon_overhang(RibbonBound bound, float x, float y, float reach)
 {
     float tangent =
@@ -102,11 +104,11 @@ SHARED_FUNCTION float ribbon_overhang(RibbonBound bound, float x, float y, float
     return bound.offset < 0.75f ? 0.5f : SHARED_MIN(tangent, 3.0f) * reach + 0.01f;
 }
 
-// --- The share of a pixel that a ribbon covers: the pixel's profile across the ribbon is a box as
-// wide as the larger component a of the direction spread by one as wide as the smaller, b, a
-// trapezoid. With its area between the middle and t >= 0, A(t) = (m - max(m - (a - b)/2, 0)^2 / (2
-// b)) / a where m = min(t, (a + b)/2), the ribbon |across| < h covers A(d + h) - sign(d - h) A(|d -
-// h|) at the distance d.
+// --- The share of a pixel that a ribbon covers. Across the ribbon, a pixel's profile is a
+// trapezoid: a box of width a convolved with a box of width b, where a is the larger and b the
+// smaller component of the direction. A(t) is the profile's area between the middle and t >= 0:
+// A(t) = (m - max(m - (a - b)/2, 0)^2 / (2 b)) / a, where m = min(t, (a + b)/2). At the distance d,
+// the ribbon |across| < h covers A(d + h) - sign(d - h) A(|d - h|).
 
 SHARED_STRUCT(RibbonProfile)
 {
@@ -127,7 +129,7 @@ SHARED_FUNCTION RibbonProfile ribbon_profile(float x, float y)
     return profile;
 }
 
-// A(t) a.
+// A(t) times a.
 SHARED_FUNCTION REAL ribbon_area(REAL t, float inner, float outer, float curve)
 {
     REAL m = SHARED_MIN(t, outer), beyond = SHARED_MAX(m - inner, 0.0f);

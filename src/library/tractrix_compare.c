@@ -35,7 +35,7 @@ static Result take_limits(CompareLimits *limits, const TractrixLimits *asked, Er
     return RESULT_OK;
 }
 
-// Up to three images of one size, and the mask that the third one is.
+// Up to three images of equal size, and the mask that the third image gives.
 typedef struct Compared {
     Image image[3];
     Mask mask;

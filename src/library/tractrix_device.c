@@ -10,7 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
-// --- The thread of an own device: EGL's current context is a thread's, and so the host's stays.
+// --- The thread of an own device. EGL's current context belongs to a thread, so the host's context
+// stays current in the host's threads.
 
 static void *serve(void *data)
 {
@@ -79,7 +80,7 @@ Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, 
     return result;
 }
 
-// --- From the first to the last.
+// --- Lifetime.
 
 void library_keep_device(TractrixDevice *device)
 {
@@ -90,7 +91,7 @@ void library_drop_device(TractrixDevice *device)
 {
     Error unused;
     if (atomic_fetch_sub(&device->users, 1) > 1) return;
-    if (device->process != getpid()) return; // its thread, context and locks are the parent's
+    if (device->process != getpid()) return; // a fork: thread, context, locks are the parent's
     if (library_on_device(device, close_gpu, &device->gpu, &unused) != RESULT_OK)
         gpu_uniforms_destroy(device->gpu.uniforms); // the host's context is gone
     if (!device->borrowed) {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What belongs to the program that writes files, chooses devices and prints.
+// Parameters that only concern the program, which writes files, chooses devices and prints.
 static const char *const OTHERS[] = {
     "check",        "output",      "size",          "depth",
     "exr_layers",   "exr_float",   "first",         "last",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Images of callers: RGBA with rows as far apart as they like.
+// Images of callers: RGBA, with any distance between rows.
 #include "library/library.h"
 
 #include "base/outfile.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Positions for callers: strand by strand, where the GPU has tiles of them.
+// Positions for callers, strand by strand. On the GPU, strands are stored in tiles.
 #include "library/library.h"
 
 #include <stdlib.h>
@@ -11,7 +11,8 @@ static const Hair *hair_of(const TractrixSimulation *simulation, int section, Tr
     return part == TRACTRIX_FOLLOWERS ? &of->follow.hair : &of->hair;
 }
 
-// How many strands in a row of a batch have the same number: the followers of a guide.
+// The number of consecutive strands of a batch with the same strand number: the followers of a
+// guide.
 static uint32_t each_of(const TractrixSimulation *simulation, int section, TractrixPart part)
 {
     return part == TRACTRIX_FOLLOWERS ? simulation->simulation.sections[section].follow.per_guide
@@ -39,7 +40,7 @@ void library_unmap(TractrixSimulation *simulation)
     free(simulation->maps);
 }
 
-// The place of a batch's strand among those that callers know.
+// The index of a batch's strand in the order that callers know.
 static uint32_t place_of(const HairBatch *batch, uint32_t s, uint32_t each)
 {
     return batch->strand[s] * each + s % each;
@@ -57,7 +58,7 @@ static void order(LibraryMap *map, const Hair *hair, uint32_t each, uint32_t *be
             *first++ = begin[place_of(&hair->batches[i], s, each)];
 }
 
-// The first time it takes memory.
+// Allocates the arrays at the first call.
 static Result prepare(LibraryMap *map, const Hair *hair, uint32_t each, Error *error)
 {
     size_t strands = hair->strand_count;
@@ -150,7 +151,7 @@ TractrixResult tractrix_simulation_map(TractrixSimulation *simulation, int secti
     return TRACTRIX_OK;
 }
 
-// --- To a buffer of the host's.
+// --- Copying to a buffer of the host.
 
 typedef struct Copying {
     Mapping mapping;

@@ -13,11 +13,11 @@ enum { MOST_SIDE = 16384 };
 
 struct TractrixRenderer {
     TractrixSimulation *simulation;
-    Scene scene; // the simulation's with another size; owns nothing
+    Scene scene; // the simulation's scene with another size; owns nothing
     Framing framing;
     Images images;
     Image image;
-    uint64_t aims; // the simulation's, when the camera was aimed
+    uint64_t aims; // the simulation's `aims` when the camera was aimed
 };
 
 static const ImageKind KINDS[] = {
@@ -42,7 +42,7 @@ static Result aim(TractrixRenderer *renderer, Error *error)
                              &renderer->simulation->device->gpu, error);
 }
 
-// --- From the first to the last.
+// --- Lifetime.
 
 typedef struct Opening {
     TractrixRenderer *renderer;
@@ -124,7 +124,7 @@ TractrixResult tractrix_renderer_create(TractrixRenderer **renderer, TractrixSim
 
 // --- Drawing.
 
-// Whether a matrix, column by column, turns and moves and does nothing else.
+// Whether a column-major matrix only rotates and translates.
 static bool is_rigid(const float m[16])
 {
     for (int i = 0; i < 3; ++i)
@@ -138,7 +138,7 @@ static bool is_rigid(const float m[16])
     return turn > 0 && m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1;
 }
 
-// What the matrices say: clip z = P10 z + P14, w = -z; the eye is -R^T t.
+// Reads the view from the matrices: clip-space z = P10 z + P14, w = -z; the eye is at -R^T t.
 static Result take_view(View *view, const TractrixView *asked, Error *error)
 {
     TractrixView from;

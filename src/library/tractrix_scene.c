@@ -13,7 +13,7 @@
 
 static const SceneOverrides NO_OVERRIDES;
 
-// --- Making a scene, and making it again.
+// --- Making a scene, and making it again from its steps.
 
 static bool is_preset(const ParamInfo *info)
 {
@@ -56,7 +56,7 @@ static Result apply(Scene *scene, const TractrixScene *of, const LibraryStep *st
     return result == RESULT_OK ? result : error_prefix(error, result, "%s: ", step->info->name);
 }
 
-// What depends on all parameters together.
+// Settles values that depend on all parameters together.
 static Result settle(Scene *scene, const TractrixScene *from, Error *error)
 {
     static const char ARRAY[] = "(array)";
@@ -77,7 +77,8 @@ Result library_copy_scene(Scene *scene, const TractrixScene *from, Error *error)
     return result;
 }
 
-// Does a step, and remembers it. Takes its text over.
+// Executes a step and remembers it, so that the scene can be made again. Takes ownership of its
+// text.
 static Result take_step(TractrixScene *scene, LibraryStep step, Error *error)
 {
     LibraryStep *steps = realloc(scene->steps, (scene->step_count + (size_t)1) * sizeof *steps);
@@ -92,7 +93,7 @@ static Result take_step(TractrixScene *scene, LibraryStep step, Error *error)
     return result;
 }
 
-// --- From the first to the last.
+// --- Lifetime.
 
 void tractrix_scene_destroy(TractrixScene *scene)
 {
@@ -113,7 +114,7 @@ void tractrix_scene_destroy(TractrixScene *scene)
     free(scene);
 }
 
-// Copies of texts, of which some may be NULL.
+// `path`, `json`, `folder` and `look` are copied; some may be NULL.
 static Result make(TractrixScene **scene, const char *path, const char *json, const char *folder,
                    const char *look, Error *error)
 {
@@ -149,7 +150,7 @@ TractrixResult tractrix_scene_create(TractrixScene **scene, const char *look, Tr
     return finish(scene, result, &why, error);
 }
 
-// Looks now whether the file is there: it is read by the simulation, whose error would come late.
+// Checks now that the file can be read: only the simulation reads it, whose error would come late.
 static Result check_file(const char *path, Error *error)
 {
     if (strcmp(path, "-") == 0)
@@ -157,13 +158,13 @@ static Result check_file(const char *path, Error *error)
     struct stat status;
     if (access(path, R_OK) == 0 && stat(path, &status) == 0 && !S_ISDIR(status.st_mode))
         return RESULT_OK;
-    Bytes bytes; // says what the programs say
+    Bytes bytes; // gives the same message as the programs
     Result result = bytes_read_file(&bytes, path, error);
     bytes_destroy(&bytes);
     return result;
 }
 
-// A pattern of numbered files ('%') is looked at by its reader.
+// Patterns of numbered files ('%') are checked by their reader.
 static Result check_files(const TractrixScene *scene, Error *error)
 {
     const RunParams *run = &scene->scene.run;
@@ -334,7 +335,7 @@ static bool copy_floats(void *to, const float *from, size_t count)
     return *array != NULL;
 }
 
-// As readers of files do: in double, rounded once.
+// Converts points as file readers do: in double precision, rounded once.
 static void put_points(float (*to)[3], const float *from, size_t count, double unit, bool up_z)
 {
     for (size_t v = 0; v < count; ++v, from += 3) {
@@ -377,7 +378,7 @@ static Result add_strands(TractrixScene *scene, const char *name, const Tractrix
     THEN(result, take_step(scene, (LibraryStep){.array = scene->array_count}, error));
     if (result == RESULT_OK) {
         ++scene->array_count;
-        // Only copies of the scene are loaded, and this array will move.
+        // Only copies of the scene are loaded, and growing this array moves it.
         scene->scene.sections[scene->scene.section_count - 1].given = NULL;
         return RESULT_OK;
     }

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- From the first to the last.
+// --- Lifetime.
 
 void library_keep_simulation(TractrixSimulation *simulation)
 {
@@ -48,7 +48,7 @@ void tractrix_simulation_destroy(TractrixSimulation *simulation)
     if (simulation) library_drop_simulation(simulation);
 }
 
-// --- Making one.
+// --- Making a simulation.
 
 static Result check(const Scene *scene, Error *error)
 {
@@ -74,13 +74,13 @@ static void warn(const Scene *scene, const Assets *assets, FILE *messages)
     }
 }
 
-// Everything that needs no device.
+// Loads everything that needs no device.
 static Result load(TractrixSimulation *simulation, const TractrixScene *from, FILE *messages,
                    Error *error)
 {
     Scene *scene = &simulation->scene;
     TRY(library_copy_scene(scene, from, error));
-    scene->run.sdf_cache = false; // no files in the home
+    scene->run.sdf_cache = false; // write no files to the home folder
     TRY(check(scene, error));
     TRY(assets_load(&simulation->assets, scene, messages, false, error));
     scene->given_mesh = NULL;
@@ -146,7 +146,7 @@ double tractrix_simulation_time(const TractrixSimulation *simulation)
     return simulation->simulation.time;
 }
 
-// --- Going on.
+// --- Stepping.
 
 static Result set(TractrixSimulation *simulation, const char *name, const char *text, Error *error)
 {
@@ -169,11 +169,12 @@ TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const cha
     return library_end(set(simulation, name, text, &why), &why, error);
 }
 
-// A frame: the head or the mesh moves, or (both NULL) they do as the scene says, or stay.
+// A frame for which the host gives the pose of the head or the mesh. If both are NULL, they move as
+// the scene says, or stay.
 typedef struct Frame {
     TractrixSimulation *simulation;
     const TractrixPose *head;
-    float (*mesh)[3]; // in the world; changed
+    float (*mesh)[3]; // in the world; modified
 } Frame;
 
 static Result advance(void *data, Error *error)
@@ -196,7 +197,8 @@ static Result advance(void *data, Error *error)
     return gpu_check("simulating", error);
 }
 
-// Whether a frame ends with a step, and time goes on: what is between would look ahead.
+// Checks that a frame ends with a step and that time goes on: positions between steps would need
+// the next pose.
 static Result check_drive(const TractrixSimulation *simulation, Error *error)
 {
     double steps = simulation->simulation.schedule.steps_per_frame;
