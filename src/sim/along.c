@@ -43,7 +43,7 @@ void along_destroy(Along *along)
     *along = (Along){0};
 }
 
-// The section's parameters as they are at `share` of the strand.
+// The section's parameters at the place `share` along the strand.
 static SectionParams params_at(const SectionParams *params, double share)
 {
     SectionParams at = *params;

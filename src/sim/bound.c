@@ -72,7 +72,7 @@ static void find_turns(void *data, int part)
 const BodyPose *bound_body_pose(BoundBody *bound, double time)
 {
     double shape = bound_body_shape(bound, time);
-    BodyPose *pose = &bound->poses[0]; // the one that was used longest ago
+    BodyPose *pose = &bound->poses[0]; // the least recently used pose
     ++bound->calls;
     for (int i = 0; i < BODY_POSES; ++i) {
         BodyPose *known = &bound->poses[i];
@@ -90,7 +90,8 @@ const BodyPose *bound_body_pose(BoundBody *bound, double time)
     return pose;
 }
 
-// Poses that are known lack the turns of vertices that nobody has wanted so far.
+// Marks the vertices whose turns are needed. Cached poses lack the turns of these vertices, so they
+// are dropped.
 static void want(BoundBody *bound, const MeshBinding *binding)
 {
     for (uint32_t i = 0; i < binding->count; ++i)
@@ -109,7 +110,7 @@ void bound_destroy(Bound *bound)
     *bound = (Bound){0};
 }
 
-enum { MOST_TEXELS = 6 }; // a strand
+enum { MOST_TEXELS = 6 }; // per strand
 
 static Result make_buffers(Bound *bound, const GpuLimits *limits, Error *error)
 {
@@ -149,7 +150,7 @@ static void put_motion(Float4 texels[2], const RigidMotion *motion, const RigidM
     texels[1][3] = 0;
 }
 
-// Fills the texels of a strand, of which `motions` are the frames at the times asked for.
+// Fills the texels of one strand. `motions` are the motions of its root at the requested times.
 typedef void FillStrand(Float4 *texels, const RigidMotion *motions, const void *data);
 
 typedef struct Filling {
@@ -157,7 +158,7 @@ typedef struct Filling {
     const HairBatch *batch;
     const BodyPose *poses[3];
     int times, texels, parts;
-    bool goes_on; // the frames before are those after the last step
+    bool goes_on; // the motion at the step's start is that of the last step's end
     Float4 *content;
     FillStrand *fill;
     const void *data;
@@ -261,7 +262,7 @@ static RigidMotion motion_of(const HeadPose *head)
     return motion;
 }
 
-// --- Motions for carry.comp: R, T, V, W.
+// --- Motions for carry.comp: rotation, translation, velocity, spin.
 
 static void fill_way(Float4 *texels, const RigidMotion *motions, const void *data)
 {
@@ -281,7 +282,7 @@ void bound_set_way(Bound *bound, double from_time, const HeadPose *from, double 
     bound->content = BOUND_MOTIONS;
 }
 
-// Of head_starts_moving: one-sided differences of second order.
+// Step of the one-sided second-order differences, as in head_starts_moving.
 static const double START_H = 1e-3;
 
 static void rotation_vector(const RigidMotion *from, const RigidMotion *to, Double3 vector)
@@ -308,7 +309,7 @@ static void fill_start(Float4 *texels, const RigidMotion *motions, const void *d
         double velocity = (4 * (at[1].translation[k] - at[0].translation[k]) -
                            (at[2].translation[k] - at[0].translation[k])) /
                           (2 * START_H);
-        texels[2][k] = (float)(velocity - moved[k]); // of the point that is at the origin
+        texels[2][k] = (float)(velocity - moved[k]); // velocity of the body's point at the origin
         texels[3][k] = (float)spin[k];
     }
     texels[2][3] = texels[3][3] = 0;

@@ -22,7 +22,7 @@ void carry_destroy(Carry *carry)
 
 static void carry_buffer(Carry *carry, CarryParams params, const SolverBuffer *buffer)
 {
-    if (buffer->kind == SOLVER_POINTS) return; // with their velocities, which follow
+    if (buffer->kind == SOLVER_POINTS) return; // follow with the velocities
     const SolverBuffer *points = buffer->kind == SOLVER_VELOCITIES ? buffer - 1 : buffer;
     params.stride = buffer->kind == SOLVER_TIPS ? 2 : 1;
     params.beside = buffer->kind == SOLVER_TIPS;

@@ -7,15 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A shape in memory.
+// A collider in the layout of the shader's buffer.
 typedef struct Shape {
     float texel[COLLIDER_TEXELS][4];
 } Shape;
 
-// CPU drivers end loops silently after so many iterations in all of an invocation.
+// CPU drivers silently end all loops of an invocation after this many iterations.
 enum { MOST_ITERATIONS_ON_CPU = 65535, ROUNDS = 3 };
 
-// So many cones a shader is compiled for.
+// Cones up to this number are kept in registers: the shader is compiled for their count.
 enum { MOST_IN_REGISTERS = 8 };
 
 static int count_kind(const Colliders *colliders, ColliderKind kind)
@@ -40,7 +40,7 @@ void collision_destroy(Collision *collision)
     *collision = (Collision){0};
 }
 
-// Each particle is tested against every shape, and in contact again in each round.
+// Each particle is tested against every shape, and each contact again in every round.
 static Result check_loops(const Collision *collision, bool software, Error *error)
 {
     for (uint32_t i = 0; i < collision->hair->batch_count && software; ++i) {
@@ -74,7 +74,7 @@ static Result create_batches(Collision *collision, const GpuLimits *limits, Erro
     return RESULT_OK;
 }
 
-// The pass for one of the modes.
+// Creates the shader pass for a mode.
 static Result create_pass(Collision *collision, const Gpu *gpu, CollisionMode mode, Error *error)
 {
     int cones = 0;
@@ -92,11 +92,12 @@ static Result create_pass(Collision *collision, const Gpu *gpu, CollisionMode mo
     return step_pass_create(&collision->pass, gpu, "sim/collide.comp", defines, error);
 }
 
-// As far as particles are from the colliders at time 0, in the groom.
+// Measures how far the groom's particles are from the colliders at time 0; closer contact than that
+// does not push them.
 static Result find_clearances(Collision *collision, const SolverSetup *setup, Error *error)
 {
     static const HeadPose origin = {.rotation = {0, 0, 0, 1}};
-    enum { LARGEST = 0x7f7fffff }; // of floats, as bits
+    enum { LARGEST = 0x7f7fffff }; // largest float, as bits
     const Hair *hair = collision->hair;
     const HeadPose *head = setup->head ? setup->head : &origin;
     const SolverStep step = {.dt = 1, .head_old = *head, .head = *head};
@@ -151,7 +152,7 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
     return result;
 }
 
-// A ball that all hair stays in, whatever the solver does to it.
+// A ball around the head that contains all hair, whatever the solver does to it.
 static float hair_ball(const Hair *hair, const HeadPose *head, vec3 centre)
 {
     vec3 middle, size;
@@ -162,11 +163,12 @@ static float hair_ball(const Hair *hair, const HeadPose *head, vec3 centre)
     return 0.5f * glm_vec3_norm(size) + 2 * hair->longest;
 }
 
-// At what distance everything is from a cone that hair cannot reach.
+// Distance that the shader computes to a cone that the hair cannot reach.
 static const float NEVER = 1e30f;
 
-// Writes the shapes by groups, in each those that move with the head first. Cones that the hair
-// cannot reach keep their places, other such shapes are left out. Returns how many it can reach.
+// Writes the shapes by groups, and within a group those that move with the head first. The number
+// of cones is compiled into the shader, so cones out of reach stay, but at distance NEVER; other
+// shapes out of reach are left out. Returns how many shapes the hair can reach.
 static uint32_t place_shapes(const Collision *collision, const HeadPose *head,
                              CollideParams *params, Shape *shapes)
 {
@@ -218,8 +220,9 @@ static CollideParams step_params(const Collision *collision, const SolverStep *s
     return params;
 }
 
-// A number for each sub-step that follows from the step alone, so that a run can be resumed: the
-// last part of a step counts as part 0 of it. Exact as a float, above 0, which fresh buffers hold.
+// The number that marks this sub-step's contacts. It depends only on the step, so that a resumed
+// run has the same numbers; the last sub-step counts as part 0. It is exact as a float and above 0,
+// the value in fresh buffers.
 static float stamp_of(uint32_t step, int part, int parts)
 {
     enum { STEPS = 1 << 13, PARTS = 1 << 10 };

@@ -12,14 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Spacings around the mesh, and within which distances to triangles are computed.
+// PADDING: grid points around the mesh. BAND: distance from a triangle, in spacings, within which
+// exact distances are computed.
 enum { PADDING = 3, BAND = 2 };
 
-// Work items are made and dispatched in parts of about so many (32 MiB), or what half of a storage
-// block holds, whatever the mesh.
+// Work items are created and dispatched in parts of this many (32 MiB), or fewer if half of a
+// storage block holds fewer. So memory does not grow with the mesh.
 enum { PART_ITEMS = 1 << 21 };
 
-// What a work item is: a triangle, and where its block or square begins
+// A triangle, and the first grid point of the block or square of this work item
 // (glsl/field/field_near.comp, field_cross.comp).
 typedef struct Item {
     uint32_t at[4];
@@ -28,17 +29,17 @@ typedef struct Item {
 typedef struct Items {
     Item *list;
     size_t count, capacity;
-    bool failed; // memory was short
+    bool failed; // out of memory
 } Items;
 
-// What is needed while the field is computed.
+// Temporary objects for computing the field.
 typedef struct Work {
     const Gpu *gpu;
     const Mesh *mesh;
     DistanceField *field;
     FieldParams params;
     GpuBuffer triangles, items, squares, nearest, closest[2], winding;
-    int present; // of closest
+    int present; // index of the current buffer in `closest`
 } Work;
 
 static void work_destroy(Work *work)
@@ -80,7 +81,7 @@ static void add_item(Items *items, const uint32_t at[4])
     if (!items->failed) memcpy(items->list[items->count++].at, at, sizeof items->list->at);
 }
 
-// Along one axis, the steps of `step` grid points that the range low .. high (in spacings) touches.
+// The steps of `step` grid points that the range low .. high (in spacings) touches along one axis.
 static void cover(double low, double high, uint32_t size, uint32_t step, uint32_t *first,
                   uint32_t *end)
 {
@@ -89,10 +90,10 @@ static void cover(double low, double high, uint32_t size, uint32_t step, uint32_
     *end = (uint32_t)to + 1;
 }
 
-// A triangle's box in spacings from the first grid point, and its plane.
+// A triangle's bounding box, in spacings from the first grid point, and its plane.
 typedef struct Extent {
     double low[3], high[3];
-    double normal[3], height; // unit normal; zero for a sliver
+    double normal[3], height; // unit normal; zero for a degenerate triangle
 } Extent;
 
 static Extent extent_of(const DistanceField *field, const Mesh *mesh, uint32_t triangle)
@@ -121,7 +122,7 @@ static Extent extent_of(const DistanceField *field, const Mesh *mesh, uint32_t t
     return extent;
 }
 
-// Whether the plane passes within the band of a block.
+// Whether the plane of the triangle passes within BAND of the block.
 static bool plane_is_near(const Extent *extent, const uint32_t at[3])
 {
     double half = 0.5 * (FIELD_BLOCK - 1), away = -extent->height, reach = BAND;
@@ -165,7 +166,8 @@ static void set_params(Work *work)
     gpu_uniforms_set(BIND_STEP, &work->params, sizeof work->params);
 }
 
-// Work groups for a row of `points` of the grid, whose rows are the dispatch's.
+// The number of work groups along a row of `points` grid points. Rows are the other dimensions of
+// the dispatch.
 static GLuint groups_of(const Work *work, uint32_t points)
 {
     GLuint lanes = (GLuint)work->gpu->limits.sizes.items;
@@ -217,7 +219,7 @@ static Result upload_triangles(Work *work, Error *error)
     for (size_t i = 0; i < (size_t)mesh->triangle_count * 3; ++i)
         for (int k = 0; k < 3; ++k)
             corners[i][k] = mesh->position[mesh->triangle[i / 3][i % 3]][k] - work->field->low[k];
-    // Read as a texture only, so that the limit of storage blocks is none for it.
+    // Read only as a texture, so the limit of storage blocks does not apply.
     GLsizeiptr size = (GLsizeiptr)((size_t)mesh->triangle_count * 3 * sizeof *corners);
     Result result =
         gpu_buffer_create_pieces(&work->triangles, &work->gpu->limits,
@@ -253,11 +255,11 @@ static Result create_buffers(Work *work, Error *error)
     return RESULT_OK;
 }
 
-// Adds the work items of a triangle.
+// A function that adds the work items of a triangle.
 typedef void AddItems(Items *items, const DistanceField *field, const Extent *extent,
                       uint32_t triangle, uint32_t axis);
 
-// Dispatches the program in use over the items of all triangles.
+// Dispatches the current program over the items of all triangles.
 static Result dispatch_triangles(Work *work, AddItems *add, uint32_t axis, Error *error)
 {
     int64_t half_block = work->gpu->limits.storage_block / (int64_t)(2 * sizeof(Item));
@@ -302,7 +304,8 @@ static Result seed(Work *work, Error *error)
     return RESULT_OK;
 }
 
-// Strides halve from half the grid to 1; a second pass of 1 mends most of what they miss.
+// Jump flooding: strides are halved from half the grid to 1. A second pass with stride 1 corrects
+// most of the errors.
 static Result flood(Work *work, Error *error)
 {
     GLuint program;
@@ -327,7 +330,7 @@ static Result cross(Work *work, uint32_t axis, Error *error)
 {
     GLuint program;
     TRY(use(work, &program, "field/field_cross.comp", error));
-    gpu_buffer_bind_storage(&work->squares, 1); // now the crossings
+    gpu_buffer_bind_storage(&work->squares, 1); // reused for the crossings
     Result result = dispatch_triangles(work, add_columns, axis, error);
     glDeleteProgram(program);
     return result;
@@ -384,16 +387,16 @@ Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *m
 
 static const char MAGIC[] = "TRXFIELD";
 
-// Counts up when a field of the same mesh comes out otherwise.
+// Increase this whenever the field of an unchanged mesh changes, so that cached files are not used.
 enum { METHOD = 1 };
 
-// The grid, as it stands in the file.
+// The grid as stored in the file.
 typedef struct GridRecord {
     uint32_t size[3];
     float low[3], spacing;
 } GridRecord;
 
-// FNV-1a over 64 bits, 4 bytes at a time.
+// 64-bit FNV-1a hash, 4 bytes at a time.
 static uint64_t hash_words(uint64_t hash, const void *words, size_t count)
 {
     for (size_t i = 0; i < count; ++i) {

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// How many guides' followers a buffer holds.
+// The number of guides whose followers fit a buffer.
 static uint32_t guides_that_fit(const Follow *follow, uint32_t vertex_count,
                                 const GpuLimits *limits)
 {
@@ -20,7 +20,7 @@ static uint32_t guides_that_fit(const Follow *follow, uint32_t vertex_count,
 typedef float Float4[4];
 typedef uint32_t Uint4[4];
 
-// What the GPU is given of the batch's followers; the last one's copies fill the tile.
+// Uploads the batch's followers. Copies of the last follower fill up the tile.
 static Result upload_batch(HairBatch *hair, FollowBatch *batch, const Follower *follower,
                            const GpuLimits *limits, Error *error)
 {
@@ -54,11 +54,11 @@ static Result upload_batch(HairBatch *hair, FollowBatch *batch, const Follower *
     return result;
 }
 
-// Of a follower that is bound.
+// The data of a follower that is bound to the mesh.
 struct FollowerRoot {
-    uint32_t strand[3]; // its guides', of the file
+    uint32_t strand[3]; // strands (of the file) that are its guides
     double weight[3];
-    double place[3]; // its root at rest, m
+    double place[3]; // position of its root at rest, m
 };
 
 static bool add_batch(Follow *follow)
@@ -74,7 +74,7 @@ static bool add_batch(Follow *follow)
     return true;
 }
 
-// Which guides each has, by strand of the file.
+// Copies each follower's guides (as strands of the file), weights and offset.
 static struct FollowerRoot *copy_roots(const HairBatch *hair, const Follower *follower,
                                        const uint32_t *strand)
 {
@@ -88,7 +88,7 @@ static struct FollowerRoot *copy_roots(const HairBatch *hair, const Follower *fo
     return roots;
 }
 
-// The followers of one batch of guides, in as many batches as they need.
+// Creates the followers of one batch of guides, split into as many batches as needed.
 static Result create_batches(Follow *follow, uint32_t guide_batch, const FollowPlan *plan,
                              const GpuLimits *limits, Error *error)
 {
@@ -187,7 +187,7 @@ static Result bind_batch(Follow *follow, uint32_t i, BoundBody *body, const Stra
                         ? RESULT_OK
                         : error_set(error, RESULT_FAILED, "no memory for %zu followers", slots);
     for (uint32_t s = 0; s < hair->strand_count && result == RESULT_OK; ++s) {
-        struct FollowerRoot *root = &batch->root[s]; // its place is the offset so far
+        struct FollowerRoot *root = &batch->root[s]; // `place` is still the offset from the guides
         for (int k = 0; k < 3; ++k) {
             for (int g = 0; g < 3; ++g)
                 root->place[k] +=
@@ -201,7 +201,8 @@ static Result bind_batch(Follow *follow, uint32_t i, BoundBody *body, const Stra
     return result;
 }
 
-// The plan once more: followers that are not bound need no memory for it.
+// Computes the plan a second time instead of keeping it: followers that are not bound then take no
+// memory for it.
 static Result find_roots(Follow *follow, uint32_t guide_batch, const Strands *strands, Error *error)
 {
     const HairBatch *guides = &follow->guides->batches[guide_batch];
@@ -241,11 +242,11 @@ typedef struct Moving {
     FollowBatch *batch;
     const HairBatch *hair;
     const BodyPose *pose;
-    const double (*guide)[3]; // [strands]: where the guides' roots are now
+    const double (*guide)[3]; // [strands] current positions of the guides' roots
     int parts;
 } Moving;
 
-// The offset from where the guides' roots are to where the mesh has the follower's.
+// Sets each offset so that the follower's root stays on its place of the mesh.
 static void move_part(void *data, int part)
 {
     const Moving *moving = data;
@@ -268,7 +269,8 @@ static void move_part(void *data, int part)
     }
 }
 
-// Where the guides' roots are: [guide_roots->count], to be freed; NULL without memory.
+// The current positions of the guides' roots, [guide_roots->count], which the caller frees. NULL if
+// memory is short.
 static double (*place_guides(const Follow *follow, const BodyPose *pose))[3]
 {
     double(*places)[3] = malloc(((size_t)follow->guide_roots->count + 1) * sizeof *places);

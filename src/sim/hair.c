@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Strand numbers in the order of their vertex counts; equal counts keep the file's order.
+// Strand numbers sorted by vertex count. Strands with equal counts keep the file's order.
 typedef struct Order {
     uint32_t *strand;
     uint32_t count;
@@ -36,8 +36,8 @@ static uint32_t slots_of(uint32_t strands)
     return hair_slots(&(HairBatch){.strand_count = strands});
 }
 
-// Where the batch that begins at `begin` ends: at another vertex count, where a buffer of what
-// solvers keep would be full.
+// The end of the batch that begins at `begin`. A batch has one vertex count, and a buffer must hold
+// what a solver stores for it.
 static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t begin,
                           const GpuLimits *limits)
 {
@@ -52,7 +52,7 @@ static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t b
 
 typedef float Float4[4];
 
-// The rest shape and first positions of the batch's strand `slot`, which is the file's strand `s`.
+// Fills in the rest shape and the first positions of slot `slot` from the file's strand `s`.
 static void fill_strand(Float4 *rest, Float4 *position, const HairBatch *batch, uint32_t slot,
                         const Strands *strands, uint32_t s)
 {

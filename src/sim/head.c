@@ -47,7 +47,7 @@ HeadMotion head_motion_between(const HeadPose *from, const HeadPose *to)
     return motion;
 }
 
-// The turn from one pose to the other: axis times angle, rad.
+// The rotation from one pose to the other, as a vector: axis times angle (rad).
 static void rotation_between(const HeadPose *from, const HeadPose *to, vec3 vector)
 {
     versor back, turn;
@@ -58,8 +58,8 @@ static void rotation_between(const HeadPose *from, const HeadPose *to, vec3 vect
     glm_vec3_scale(turn, sine > 0 ? 2 * atan2f(sine, turn[3]) / sine : 0, vector);
 }
 
-// One-sided differences of second order, (4 f(h) - f(2h) - 3 f(0))/(2h): a track may begin with a
-// jump of its velocity at 0.
+// One-sided second-order differences, (4 f(h) - f(2h) - 3 f(0))/(2h), because a track may start
+// with a jump of its velocity at time 0.
 bool head_starts_moving(const Scene *scene, HeadMotion *motion)
 {
     const double h = 1e-3;
@@ -75,7 +75,7 @@ bool head_starts_moving(const Scene *scene, HeadMotion *motion)
         motion->velocity[k] = (float)((4 * step - two_steps) / (2 * h));
         motion->spin[k] = (float)((4 * (double)near[k] - (double)far[k]) / (2 * h));
     }
-    // Of the point that is now at the world's origin.
+    // Velocity of the head's point that is at the world's origin.
     glm_vec3_cross(motion->spin, at[0].translation, moved);
     glm_vec3_sub(motion->velocity, moved, motion->velocity);
     return glm_vec3_norm2(motion->velocity) > 0 || glm_vec3_norm2(motion->spin) > 0;
@@ -87,7 +87,7 @@ static void pivot_at(const Scene *scene, const HeadPose *pose, vec3 place)
     glm_vec3_add((float *)pose->translation, place, place);
 }
 
-// The pose with the head turned by `share` of the way between both, its pivot moved by as much.
+// The pose that has made `share` of the turn and of the pivot's move from one pose to the other.
 static HeadPose pose_on_the_way(const Scene *scene, const HeadPose *from, const HeadPose *to,
                                 float share)
 {
@@ -109,7 +109,7 @@ bool head_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to, He
     pivot_at(scene, from, begin);
     pivot_at(scene, to, end);
     rotation_between(from, to, turn);
-    float felt = 1; // the share of the motion that is within both limits
+    float felt = 1; // the largest share of the motion that respects both limits
     felt = fminf(felt, run->teleport_distance / fmaxf(glm_vec3_distance(begin, end), 1e-30f));
     felt = fminf(felt, glm_rad(run->teleport_angle) / fmaxf(glm_vec3_norm(turn), 1e-30f));
     if (felt >= 1 || run->teleport == TELEPORT_NONE) return false;

@@ -5,22 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Spacings around the mesh; parts of one to which vertices are rounded; and what counts as motion.
+// PADDING: grid points around the mesh. ROUNDED: vertices are rounded to 1/64 of a spacing, so that
+// a mesh that barely moves keeps its field.
 enum { PADDING = 3, ROUNDED = 64 };
-static const float STILL = 1e-3f; // spacings a step
+static const float STILL = 1e-3f; // smallest motion that counts, spacings a step
 static const uint32_t NONE = UINT32_MAX;
 
 typedef struct MovingFieldWork {
-    int32_t (*rounded)[3]; // [vertices], of the present distances
-    float (*corner)[3];    // [vertices], the same in spacings from the first grid point
-    float (*moved)[3];     // [vertices], m
-    float *square;         // [points], of the distance, in spacings
-    uint32_t *triangle;    // [points], the nearest one; NONE: too far
+    int32_t (*rounded)[3]; // [vertices], those of the current field
+    float (*corner)[3];    // [vertices], `rounded` in spacings from the first grid point
+    float (*moved)[3];     // [vertices], displacement in the step, m
+    float *square;         // [points], squared distance in spacings
+    uint32_t *triangle;    // [points], the nearest triangle; NONE if it is too far
     int16_t *crossing, *winding;
-    int32_t *beyond;        // of a column: crossings behind its end
-    uint32_t *front, *next; // points that were reached last
+    int32_t *beyond;        // [columns], crossings behind the end of the column
+    uint32_t *front, *next; // fronts of grid points that are being spread
     float (*texel)[4];
-    bool moving; // the texels have displacements
+    bool moving; // the texels contain displacements
 } MovingFieldWork;
 
 void moving_field_destroy(MovingField *field)
@@ -74,7 +75,7 @@ static void add_point(float low[3], float high[3], const float p[3], float by)
     }
 }
 
-// Around the mesh at all times, as far as hair can reach.
+// The box of the mesh at all times, cut to where hair can reach.
 static bool find_box(const Body *body, float reach, float low[3], float high[3])
 {
     uint32_t vertices = body->mesh->vertex_count;
@@ -133,7 +134,7 @@ Result moving_field_create(MovingField *field, const Gpu *gpu, const Body *body,
     return result;
 }
 
-// --- Distances, all in spacings from the first grid point.
+// --- Distances. All coordinates are in spacings from the first grid point.
 
 typedef struct Closest {
     float square, weight[3];
@@ -193,7 +194,7 @@ static uint32_t clamp_index(float x, uint32_t size)
     return (uint32_t)fminf(fmaxf(x, 0), (float)size - 1);
 }
 
-// Gives the triangle to the grid points within a spacing of it, unless they have a nearer one.
+// Assigns the triangle to the grid points within one spacing, unless they have a nearer triangle.
 static void take_triangle(MovingField *field, uint32_t t)
 {
     MovingFieldWork *work = field->work;
@@ -218,7 +219,8 @@ static void take_triangle(MovingField *field, uint32_t t)
                 p[0] = (float)x, p[1] = (float)y, p[2] = (float)z;
                 float height = normal[0] * (p[0] - a[0]) + normal[1] * (p[1] - a[1]) +
                                normal[2] * (p[2] - a[2]);
-                if (fabsf(height) > length) continue; // farther than a spacing from its plane
+                // Farther than a spacing from the triangle's plane.
+                if (fabsf(height) > length) continue;
                 size_t at = ((size_t)z * size[1] + y) * size[0] + x;
                 Closest closest = closest_on(p, a, b, c);
                 if (closest.square > 1 || closest.square >= work->square[at]) continue;
@@ -227,9 +229,11 @@ static void take_triangle(MovingField *field, uint32_t t)
             }
 }
 
-// --- Inside and outside: as glsl/field/field_cross.comp and field_sign.comp.
+// --- Inside or outside, computed as in glsl/field/field_cross.comp and field_sign.comp.
 
-// +1 if p is on the left of the way from a to b, else -1; the same number from both sides.
+// +1 if p is to the left of the line from a to b, -1 if it is to the right. Both triangles at an
+// edge compute it from the same end, so that rounding cannot put p into both of them or into
+// neither.
 static int side(const float a[3], const float b[3], int u, int v, const float p[2])
 {
     bool turned = a[u] > b[u] || (a[u] == b[u] && a[v] > b[v]);
@@ -307,12 +311,12 @@ static bool is_inside(const MovingFieldWork *work, size_t at)
     return work->winding[at] >= 3 || work->winding[at] <= -3;
 }
 
-// --- Beyond a spacing: from neighbour to neighbour.
+// --- Distances of more than one spacing, spread from grid point to grid point.
 
 typedef struct Spread {
     MovingField *field;
-    size_t reached; // in `next`
-    float most;     // of a square outside
+    size_t reached; // number of points in `next`
+    float most;     // largest squared distance outside the mesh
 } Spread;
 
 static void reach(Spread *spread, size_t at, uint32_t t, const float p[3])
@@ -327,8 +331,9 @@ static void reach(Spread *spread, size_t at, uint32_t t, const float p[3])
     if (fresh) work->next[spread->reached++] = (uint32_t)at;
 }
 
-// A front of points hands its triangles on to those around it that have none yet. `level`: how many
-// fronts have been, so that points of the same front may still choose between its triangles.
+// Passes the triangles of the front's points on to their neighbours that have none yet. `level` is
+// the number of the front that reached a point, so that points of the same front can still choose
+// the nearest of several triangles.
 static void spread_front(Spread *spread, size_t count, uint8_t *level, uint8_t now)
 {
     MovingFieldWork *work = spread->field->work;
@@ -356,7 +361,7 @@ static void spread_all(MovingField *field)
 {
     MovingFieldWork *work = field->work;
     size_t points = distance_field_count(&field->field), count = 0;
-    uint8_t *level = (uint8_t *)work->crossing, now = 1; // whose room is free again
+    uint8_t *level = (uint8_t *)work->crossing, now = 1; // reuses the memory of the crossings
     float most = field->outside / field->field.spacing;
     Spread spread = {.field = field, .most = most * most};
     memset(level, 0, points);
@@ -372,8 +377,8 @@ static void spread_all(MovingField *field)
     }
 }
 
-// A front takes the first triangle that comes; two sweeps over the grid, from either end, let each
-// point inside choose among those of all its neighbours.
+// A front takes the first triangle that arrives, which may not be the nearest. Two sweeps over the
+// grid, in opposite directions, let each inner point choose among the triangles of its neighbours.
 static void sweep(MovingField *field, bool back)
 {
     MovingFieldWork *work = field->work;
@@ -398,7 +403,7 @@ static void sweep(MovingField *field, bool back)
     }
 }
 
-// --- All of it.
+// --- The whole field.
 
 static void fill_texels(MovingField *field)
 {
@@ -440,7 +445,7 @@ static void build(MovingField *field)
     ++field->builds;
 }
 
-// Rounds the vertices; whether any is at another place than before.
+// Rounds the vertices. Returns whether any of them changed.
 static bool take_vertices(MovingField *field, const float (*after)[3])
 {
     MovingFieldWork *work = field->work;
@@ -457,7 +462,7 @@ static bool take_vertices(MovingField *field, const float (*after)[3])
     return changed;
 }
 
-// Whether any vertex moves in the step.
+// Computes the displacements. Returns whether any vertex moves by more than STILL in the step.
 static bool take_moves(MovingField *field, const float (*before)[3], const float (*after)[3])
 {
     MovingFieldWork *work = field->work;

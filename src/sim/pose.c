@@ -19,7 +19,8 @@ static PoseMix mix_of(const PoseOptions *options)
     return style <= 0.5f ? POSE_NEAR_PHYSICAL : POSE_NEAR_STYLE;
 }
 
-// The factors of a turn by v p, as functions of x = sin^2(p/2): cos(v p) and sin(v p)/sin(p).
+// The coefficients of a rotation by v p as functions of x = sin^2(p/2): cos(v p) and sin(v
+// p)/sin(p).
 static double turn_cos(double x, double v)
 {
     return cos(2 * v * asin(sqrt(x)));
@@ -31,9 +32,9 @@ static double turn_sin(double x, double v)
     return p < 1e-9 ? v : sin(v * p) / sin(p);
 }
 
-// The polynomial through the function at the Chebyshev nodes of 0 <= x <= 1/2 (p <= 90 deg), by
-// Newton's divided differences. The nearest singularity is x = 1, so that a term more gains a
-// factor of 3 + sqrt(8); with 8 the error is below 3e-7 for any v.
+// Interpolates the function at the Chebyshev nodes of 0 <= x <= 1/2 (p <= 90 deg) by Newton's
+// divided differences. The nearest singularity is x = 1, so each further term divides the error by
+// 3 + sqrt(8); with 8 terms the error is below 3e-7 for any v.
 static void interpolate(double (*function)(double, double), double v, float coefficients[TERMS])
 {
     double x[TERMS], d[TERMS], c[TERMS] = {0};
@@ -78,7 +79,7 @@ void pose_write(Pose *pose, const HairBatch *batch, const GpuBuffer *segments, u
 {
     PoseParams params = {
         .strand_count = batch->strand_count, .vertex_count = batch->vertex_count, .lead = lead};
-    if (pose->bound) // the strand's frame turns it
+    if (pose->bound) // the shader turns it by the strand's frame
         memcpy(params.hanging, pose->hanging, sizeof pose->hanging);
     else
         glm_quat_rotatev((float *)head->rotation, pose->hanging, params.hanging);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The greatest value that each parameter will have.
+// The greatest value of each parameter over the whole run.
 static SectionParams greatest_params(const Scene *scene, const Section *section)
 {
     const int most = 10000;
@@ -19,7 +19,7 @@ static SectionParams greatest_params(const Scene *scene, const Section *section)
     return params;
 }
 
-// Gives the section the parameters of a time, if they change; returns their stamp.
+// Applies the parameters of a time if the section has tracks. Returns their stamp.
 static uint64_t set_params(Simulation *simulation, SimulationSection *section, double time)
 {
     const SectionTracks *tracks =
@@ -40,15 +40,15 @@ uint64_t simulation_params_stamp(Simulation *simulation, uint32_t section, int64
                       simulation_step_time(simulation, step));
 }
 
-// Frames fall between steps if a frame is no whole number of steps; what does not step is drawn as
-// the head stands at any time.
+// Frames lie between steps if a frame is not a whole number of steps. Static hair needs no
+// inbetweens: it can be posed at any time.
 static bool needs_inbetween(const Simulation *simulation, const Solver *solver)
 {
     double steps = simulation->schedule.steps_per_frame;
     return steps != floor(steps) && !solver_is_static(solver->type);
 }
 
-// Followers of hair that moves keep out of what their guides keep out of.
+// Makes the followers of moving hair collide with the same colliders as their guides.
 static Result create_follow_collision(SimulationSection *section, const SolverSetup *setup,
                                       Error *error)
 {
@@ -57,7 +57,7 @@ static Result create_follow_collision(SimulationSection *section, const SolverSe
     drawn.hair = &section->follow.hair;
     drawn.bounds = &section->hair;
     if (!drawn.hair->batch_count || strcmp(setup->params->algo, "none") == 0) return RESULT_OK;
-    follow_write(&section->follow, &origin); // of the groom
+    follow_write(&section->follow, &origin); // positions in the groom, for the clearances
     return collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
 }
 
@@ -69,7 +69,7 @@ static void write_followers(Simulation *simulation, SimulationSection *section,
     collision_push_drawn(&section->follow_collision, head);
 }
 
-// Gravity at time 0.
+// Gravity at time 0, in which the groom is at rest.
 static void find_rest_gravity(float gravity[3], const Scene *scene)
 {
     Forces forces;
@@ -77,8 +77,8 @@ static void find_rest_gravity(float gravity[3], const Scene *scene)
     memcpy(gravity, forces.gravity, sizeof forces.gravity);
 }
 
-// Where the section's parameters are: first the greatest values that they will have, by which
-// programs and buffers are made.
+// The section's parameters. Programs and buffers are created for the greatest values that animated
+// parameters will have.
 static const SectionParams *take_params(Simulation *simulation, uint32_t i)
 {
     const Section *from = &simulation->scene->sections[i];
@@ -163,7 +163,7 @@ static bool any_collides(const Scene *scene)
     return false;
 }
 
-// What a cache holds is out of the mesh already; its guides' followers are not.
+// Guides from a cache are outside the mesh already, but their followers need the field.
 static bool needs_field(const Scene *scene, const Strands *strands)
 {
     if (!*scene->run.from_cache) return true;
@@ -222,7 +222,7 @@ static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands
 
 double simulation_stability(const Strands *strands, double g, double dt)
 {
-    double most = 0; // of (n - 1)^2 / L
+    double most = 0; // the largest (n - 1)^2 / L
     for (uint32_t s = 0; s < strands->strand_count; ++s) {
         double links = strands_size(strands, s) - 1.0, length = strands_length(strands, s);
         if (length > 0) most = fmax(most, links * links / length);
@@ -236,7 +236,7 @@ static double norm(const float v[3])
                 (double)v[2] * (double)v[2]);
 }
 
-// Between its keys no number of a track overshoots.
+// The keys' largest norm is the track's, because tracks do not overshoot between keys.
 static double greatest(const Keyframes *keys, const float constant[3])
 {
     double most = keys->count ? 0 : norm(constant);
@@ -329,7 +329,7 @@ double simulation_step_time(const Simulation *simulation, int64_t step)
     return fmax(0, (double)step / simulation->schedule.steps_per_s);
 }
 
-// Forces act at the step's start; the head's end pose is where the roots go.
+// Forces are those at the step's start; roots move to the head's pose at the step's end.
 static SolverStep next_step(const Simulation *simulation)
 {
     const Scene *scene = simulation->scene;
@@ -352,7 +352,8 @@ static SolverStep next_step(const Simulation *simulation)
     return step;
 }
 
-// The frames of bound strands in a step; a jump has taken them to its end.
+// Sets the frames of bound strands for a step. If the head jumped, they were already carried to the
+// step's end.
 static void set_frames(const Simulation *simulation, Bound *bound, const SolverStep *step)
 {
     double after = simulation_step_time(simulation, simulation->step + 1);
@@ -382,7 +383,8 @@ static void step_section(Simulation *simulation, SimulationSection *section,
     ++simulation->steps;
 }
 
-// The motion of bound strands: to `to` at the step's end, or (NULL) the start's velocities.
+// Sets the motion that carries bound strands: to the head pose `to` at the step's end, or, if NULL,
+// the velocities at the start.
 static void set_motions(const Simulation *simulation, Bound *bound, const HeadPose *to)
 {
     if (!bound->body) return;
@@ -408,7 +410,7 @@ static void carry_sections(Simulation *simulation, const HeadMotion *motion, con
     }
 }
 
-// What the head does at the step's start: it sets out, or jumps, and the mesh with it.
+// Handles a head that starts to move or jumps at the step's start: the hair is carried along.
 static void carry_along(Simulation *simulation, SolverStep *step)
 {
     HeadMotion motion;
@@ -445,7 +447,7 @@ bool simulation_settle(Simulation *simulation)
     return simulation->step < 0;
 }
 
-// Whether what is drawn of the section may differ from the last pose, the head staying where it is.
+// Whether the drawn positions may differ from the last pose, assuming that the head does not move.
 static bool moves(const SimulationSection *section)
 {
     return section->stepped ||
@@ -464,7 +466,8 @@ static void pose_section(Simulation *simulation, SimulationSection *section, con
     ++simulation->poses;
 }
 
-// Poses every section that moves as it is after the last step, and keeps that.
+// Poses every section that moves in its state after the last step, and keeps the positions for
+// inbetweens.
 static void keep(Simulation *simulation, bool later)
 {
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Particles follow each other in a strand at this distance (hair.h).
+// Distance between successive particles of a strand in a buffer (hair.h).
 enum { STRIDE = 4 * STRAND_TILE };
 
 typedef struct BufferList {
@@ -59,9 +59,9 @@ static Result list_buffers(BufferList *list, const Simulation *simulation, Error
     return error_set(error, RESULT_FAILED, "no memory for the simulation's state");
 }
 
-// --- The state in bytes: little-endian values one behind the other.
+// --- The state as bytes: a sequence of little-endian values.
 
-// Written to `stream` or, where that is NULL, read. Reading beyond the end gives zeros and
+// Writes to `stream`, or reads if `stream` is NULL. Reading beyond the end gives zeros and sets
 // `failed`.
 typedef struct Archive {
     FILE *stream;
@@ -86,7 +86,7 @@ static void pass_bytes(Archive *archive, void *bytes, size_t size)
     archive->left -= size;
 }
 
-// Numbers of 4 bytes: integers or floats.
+// Passes numbers of 4 bytes, integers or floats.
 static void pass_words(Archive *archive, void *words, size_t count)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -99,7 +99,7 @@ static void pass_words(Archive *archive, void *words, size_t count)
     }
 }
 
-// An integer or a double.
+// Passes an integer or a double of 8 bytes.
 static void pass_long(Archive *archive, void *number)
 {
     uint64_t bits;
@@ -131,7 +131,7 @@ static void pass_sleep(Archive *archive, Sleep *sleep)
     pass_words(archive, &sleep->checks, 1);
     pass_flag(archive, &sleep->asleep);
     if (!archive->stream) *last = (SolverStep){0};
-    // What of a step says whether the next one is like it.
+    // Only the members that same_forces compares.
     pass_long(archive, &last->dt);
     pass_flag(archive, &last->first);
     pass_pose(archive, &last->head_old);
@@ -140,7 +140,7 @@ static void pass_sleep(Archive *archive, Sleep *sleep)
     pass_words(archive, last->wind, 12);
 }
 
-// All but the buffers' content. False if another count of buffers is read.
+// Passes everything except the buffers' contents. False if the number of buffers differs.
 static bool pass_numbers(Archive *archive, Simulation *simulation, const BufferList *list)
 {
     int64_t frame = simulation->frame;
@@ -175,8 +175,8 @@ static bool write_buffer(Archive *archive, const GpuBuffer *buffer)
     return packed_size > 0;
 }
 
-// More bytes than the state takes. The system gives the memory as it is written, so that a large
-// one is neither copied nor there twice while it grows.
+// An upper bound of the state's size. The whole block is allocated at once, because growing a large
+// block would copy it; the system provides memory only for pages that are written.
 static size_t state_bound(const BufferList *list)
 {
     size_t size = 1 << 20;
@@ -233,8 +233,8 @@ static bool read_buffer(Archive *archive, const GpuBuffer *buffer)
     return good;
 }
 
-// A solver's first pose puts the hair into its style: it is made before the state is put in its
-// place. What depends on the time alone follows.
+// A solver's first pose puts the hair into its style, so it must come before the state is restored.
+// Also sets everything that depends only on the time.
 static void begin_sections(Simulation *simulation)
 {
     double now = simulation_step_time(simulation, simulation->step);

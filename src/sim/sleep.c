@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The rule of sleep.h.
+// Constants of the rule in sleep.h.
 static const double CHECKS_A_SECOND = 4, CALM_S = 2, REACH_S = 120;
 enum { MOST_AGAIN = 64 };
 static const float LEAVE = 1.0f / 4, GROW = 1.0f / 60;
@@ -53,7 +53,7 @@ void sleep_destroy(Sleep *sleep)
     *sleep = (Sleep){0};
 }
 
-// Whether nothing that moves hair differs between two steps, nor within them.
+// Whether everything that moves hair is the same in two steps and constant within them.
 static bool same_forces(const SolverStep *a, const SolverStep *b)
 {
     return a->dt == b->dt && !a->first && !b->first && head_is_same(&a->head, &b->head) &&
@@ -63,7 +63,7 @@ static bool same_forces(const SolverStep *a, const SolverStep *b)
            memcmp(a->wind, b->wind, sizeof a->wind) == 0;
 }
 
-// Steps to the next check: three quarters and five quarters of the mean, in turn.
+// Steps to the next check: 3/4 and 5/4 of the mean in turn.
 static int interval(const Sleep *sleep)
 {
     double mean = 1 / (CHECKS_A_SECOND * sleep->last.dt);

@@ -25,7 +25,7 @@ static const SolverType *find_type(const char *name)
     return NULL;
 }
 
-// Of parameters that solver_check has let through.
+// The type named by parameters that passed solver_check.
 static const SolverType *known_type(const SectionParams *params)
 {
     const SolverType *type = find_type(params->algo);
@@ -76,7 +76,7 @@ float solver_most_stability(const SectionParams *params)
     return known_type(params)->most_stability;
 }
 
-// Which of the type's variants the parameters name: 0, the default, for "".
+// The index of the variant that the parameters name; 0, the default, for "".
 static int find_variant(const SolverType *type, const char *variant)
 {
     for (int i = 0; i < SOLVER_MAX_VARIANTS && type->variants[i]; ++i)
@@ -87,30 +87,33 @@ static int find_variant(const SolverType *type, const char *variant)
 typedef struct SolverState SolverState;
 
 typedef struct SolverBatch {
-    GpuBuffer state;   // vec4 a particle: velocities or segments, as SolverStateKind has it
-    GpuBuffer tips;    // SOLVER_SEGMENTS: two vec4 a strand
+    GpuBuffer state;   // a vec4 per particle: velocities or segments, see SolverStateKind
+    GpuBuffer tips;    // only for SOLVER_SEGMENTS: two vec4 per strand
     GpuBuffer scratch; // SolverRecipe.scratch
 } SolverBatch;
 
 struct SolverState {
-    const SolverRecipe *recipe; // NULL: static
+    const SolverRecipe *recipe; // NULL if static
     const Hair *hair;
     const SectionParams *params;
     GpuTimer *timer;
     void *own; // the solver's own block
     StepPrograms programs;
     Along along;             // parameters that differ along the strand, or empty
-    SolverBatch *batches;    // one for each of the hair
-    float rest_gravity[3];   // m/s^2, in the head's frame: what the groom holds; 0 0 0: nothing
+    SolverBatch *batches;    // one for each batch of the hair
+    float rest_gravity[3];   // m/s^2, in the head's frame: the gravity under which the groom is at
+                             // rest; 0 if it is not balanced
     bool varies;             // parameters differ along the strand
     const GpuBuffer *frames; // of bound strands, or NULL
-    // Of parameters that change: the stiffness towards the style by which the groom holds gravity.
+    // For animated parameters: the strength of the style at time 0, at which the groom was
+    // balanced.
     bool changes;
     float held_by;       // at time 0
-    Pose pose;           // of segments; else of the style: particles start so, static hair stays so
-    Collision collision; // of the state
-    Collision drawn;     // of what is drawn, where the state is another
-    bool posed;          // particles have started
+    Pose pose;           // of segments; with particles: of the style, as which they start and as
+                         // which static hair stays
+    Collision collision; // of the solver's state
+    Collision drawn;     // of the drawn positions, if they are not the state
+    bool posed;          // the particles have their first positions
 };
 
 static bool has_particles(const SolverState *state)
@@ -177,8 +180,9 @@ static bool is_balanced(const SolverState *state)
     return glm_vec3_norm2((float *)state->rest_gravity) > 0;
 }
 
-// The strand's texels of `rest` become directions in the world; the tip is at their end. Segments
-// behind those that the head carries hang along `hanging` (head's frame) where that is not 0.
+// Turns the strand's texels of `rest` into directions in the world and adds them up to the tip. If
+// `hanging` (in the head's frame) is not 0, segments that the head does not carry point in its
+// direction.
 static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *head, uint32_t lead,
                          const float hanging[3], Float4 *rest, Float4 tip)
 {
@@ -192,14 +196,14 @@ static void place_strand(const HairBatch *hair, uint32_t slot, const HeadPose *h
     }
 }
 
-// Where a strand at rest hangs: unit vector in the head's frame; `hanging` stays where it starts in
-// the style.
+// The direction in which a strand hangs at rest, a unit vector in the head's frame. `hanging` stays
+// 0 if the strand starts in the style instead.
 static void find_hanging(const SolverState *state, vec3 hanging)
 {
     if (is_balanced(state)) glm_vec3_normalize_to((float *)state->rest_gravity, hanging);
 }
 
-// Segments and tips at rest where the head is.
+// Creates the segments and tips at rest, at the head's pose.
 static Result create_segments(SolverState *state, uint32_t i, const SolverSetup *setup,
                               Error *error)
 {
@@ -261,7 +265,7 @@ static void set_rest_gravity(SolverState *state, const SolverSetup *setup)
     glm_quat_rotatev(inverse, (float *)setup->rest_gravity, state->rest_gravity);
 }
 
-// What draws hair to its style, but for a factor.
+// The strength of the pull towards the style, up to a constant factor.
 static float style_strength(const SectionParams *params)
 {
     bool springs = strcmp(params->algo, "spring") == 0;
@@ -291,7 +295,8 @@ static Result build(SolverState *state, const SolverSetup *setup, Error *error)
                          &setup->gpu->limits, error));
     if (segments) along_fill(&state->along, &(SolverStep){.dt = 1}, state->own);
     uint32_t carried = setup->params->clamped > 1 ? 2 : recipe->carried;
-    // What hangs through the head to let the groom swing must not collide; what is drawn does.
+    // With a balanced groom the simulated strands hang down through the head, so only the drawn
+    // positions collide.
     if (!segments || !is_balanced(state))
         TRY(collision_create(&state->collision, setup,
                              segments ? COLLISION_SEGMENTS : COLLISION_PARTICLES, carried, error));
@@ -321,7 +326,7 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     state->varies = recipe && !is_published(state->params) && along_varies(recipe, state->params);
     state->changes = setup->start != NULL;
     if (setup->start) state->held_by = style_strength(setup->start);
-    // The share of the style in what is drawn goes through the table of profiles.
+    // The share of the style in the drawn positions is then read from the table of profiles.
     if (recipe && recipe->state == SOLVER_SEGMENTS && recipe->along && setup->style_changes)
         state->varies = true;
     Result result = build(state, setup, error);
@@ -355,8 +360,8 @@ int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SO
     return contacts ? 3 : 2;
 }
 
-// As the pull towards the style fades, so does what holds the groom against gravity, or loose hair
-// would float.
+// The force that holds the groom against gravity fades with the pull towards the style; otherwise
+// loose hair would float.
 static float held_share(const SolverState *state)
 {
     if (!state->changes) return 1;
@@ -414,11 +419,11 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     step_programs_dispatch(&state->programs, i, hair->strand_count);
 }
 
-// The groom is at rest under its rest gravity, in which the file's author has seen it: whatever in
-// hair held it then still does, and turns with the head. So particles feel what gravity differs
-// from that. (For springs of stiffness k towards the style it is the same as to move their ends by
-// -g/k: Twigg, Kacic-Alesic: Optimization for Sag-Free Simulations, SCA 2011.) Strands of segments
-// have it in their pose.
+// The groom is at rest under the gravity in which its author saw it: a force in the hair balances
+// that gravity and turns with the head. So particles feel only the difference between gravity and
+// this rest gravity. (For springs of stiffness k towards the style, this equals moving the springs'
+// ends by -g/k: Twigg, Kacic-Alesic: Optimization for Sag-Free Simulations, SCA 2011.) Strands of
+// segments include the balance in their pose instead.
 static void hold_groom(const SolverState *state, StepParams *uniforms)
 {
     vec3 held = {0};
@@ -432,7 +437,7 @@ static void hold_groom(const SolverState *state, StepParams *uniforms)
     glm_vec3_scale(uniforms->gravity, state->params->gravity_share, uniforms->gravity);
 }
 
-// One of `count` equal parts of a step.
+// Makes one of `count` equal sub-steps.
 static void step_part(SolverState *state, const SolverStep *step, int part, int count)
 {
     const SolverRecipe *recipe = state->recipe;

@@ -23,7 +23,7 @@ static void define(ShaderDefine *defines, const SectionParams *params)
 static const SolverRecipe RECIPE = {
     .label = "sim_dftl",
     .shader = "sim/dftl.comp",
-    .most_vertices = 32000, // two sweeps
+    .most_vertices = 32000, // 2 sweeps fit the 65535 iterations of CPU drivers
     .params_size = sizeof(DftlParams),
     .fill = fill,
     .along = step_spring_along,

@@ -14,8 +14,9 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
                  const SectionParams *params)
 {
     EmulationParams *emulation = block;
-    emulation->order_seed = 1; // of every step: with a new one each, hair on a sphere trembles
-    if (is_thesis(params))     // an explicit spring
+    emulation->order_seed = 1; // the same order in every step; with changing orders, hair on a
+                               // sphere trembles
+    if (is_thesis(params))     // uses an explicit spring
         emulation->spring.stiffness = step_style_spring(uniforms, step->dt, params).stiffness;
     else
         emulation->spring = step_midpoint(uniforms, step, params);
@@ -26,8 +27,8 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[0] = (ShaderDefine){"THESIS", is_thesis(params)};
 }
 
-// As many dispatches as let each turn MOST_LINKS links (emulation.comp), of the places in a random
-// order, whose number is a power of two.
+// The number of dispatches, so that each turns at most MOST_LINKS links (emulation.comp). The
+// particles of a strand are visited in a random order, whose length is a power of two.
 static int phases(const SectionParams *params, const Hair *hair)
 {
     enum { MOST_LINKS = 40000 };
@@ -47,7 +48,7 @@ static const SolverRecipe RECIPE = {
     .shader = "sim/emulation.comp",
     .shape = STEP_EMULATION,
     .scratch = 2,
-    .most_vertices = 5000, // four sweeps beside a dispatch's links
+    .most_vertices = 5000, // 4 sweeps and MOST_LINKS fit 65535 iterations
     .params_size = sizeof(EmulationParams),
     .fill = fill,
     .define = define,
@@ -71,7 +72,7 @@ const SolverType SOLVER_EMULATION = {
     .style = "position springs, --style, --style-stiffness",
     .variants = {"projected", "thesis"},
     .caution = caution,
-    .most_stability = 1.6f, // as hybrid's
+    .most_stability = 1.6f, // as hybrid
     .published = "thesis",
     .recipes = {&RECIPE},
 };

@@ -25,7 +25,7 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[1] = (ShaderDefine){"DRAGGED", thesis || dragged};
 }
 
-// The pose's.
+// The pose reads the style.
 static void along(float texel[4], const void *block, const void *mean, const SectionParams *there)
 {
     (void)block, (void)mean;
@@ -37,7 +37,7 @@ static const SolverRecipe RECIPE = {
     .shader = "sim/split.comp",
     .state = SOLVER_SEGMENTS,
     .shape = STEP_SPLIT,
-    .most_vertices = 10000, // six loops (span, four pulls, renormalisation)
+    .most_vertices = 10000, // 6 loops (span, 4 pulls, renormalisation) fit 65535
     .carried = 1,
     .params_size = sizeof(SplitParams),
     .fill = fill,

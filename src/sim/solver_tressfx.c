@@ -9,7 +9,8 @@
 // llvmpipe silently ends all loops of an invocation after this many iterations.
 enum { MOST_ITERATIONS_ON_CPU = 65535 };
 
-// Newton's steps towards the lengths of `steady`; the rebuilding does the rest.
+// Newton steps of `steady` towards the rest lengths; the rebuilding of the strand corrects what is
+// left.
 enum { STEADY_LENGTH_PASSES = 2 };
 
 static bool is_faithful(const SectionParams *params)
@@ -17,22 +18,22 @@ static bool is_faithful(const SectionParams *params)
     return strcmp(params->variant, "tressfx4") == 0;
 }
 
-// A strand that passes of share k keep in shape is about as stiff, measured by its sag, as
-// passes k/(1 - 3k/4)/dt^2.
+// The stiffness of a strand under passes with share k. Measured by the strand's sag it is about
+// k/(1 - 3k/4)/dt^2 per pass.
 static float firmness(float share)
 {
     return share / (1 - 0.75f * share);
 }
 
-// The share that makes a pass `times` as stiff.
+// The share that makes a pass `times` as stiff, at most `most`.
 static float share_times(float share, float times, float most)
 {
     float firm = firmness(share) * times;
     return fminf(firm / (1 + 0.75f * firm), most);
 }
 
-// TressFX's own share, in its frames and two passes, is as firm as this one in a step of `frames`
-// of them. Limited: long steps with few passes stay softer.
+// The share that makes one step as stiff as TressFX's own share in two passes per frame; the step
+// lasts `frames` frames. Limited, so long steps with few passes are softer.
 static float steady_share(const SectionParams *params, float frames, float share)
 {
     int passes = params->tressfx_local_constraints_iterations;
@@ -40,11 +41,11 @@ static float steady_share(const SectionParams *params, float frames, float share
     return share_times(share, times, params->tressfx_local_max);
 }
 
-// The share of what two neighbours' velocities differ by that they exchange: as much as damps
-// critically what a joint would oscillate by alone, in passes that push both its ends by `share`.
-// With 1/2 they go together. Steps longer than a frame damp more by themselves, and long strands
-// whip in them with more: 64 vertices without drag at 30 Hz with 0.15 and more, not with 0.01 to
-// 0.1; this is 1/16.
+// The share of their velocity difference that two neighbours exchange. It critically damps the
+// oscillation of a single joint in passes that move both its ends by `share`. At 1/2 both get the
+// same velocity. Steps longer than a frame already damp more, and long strands whip if the share is
+// too large: 64 vertices without drag at 30 Hz whip with 0.15 and more, but not with 0.01 to 0.1.
+// The formula gives 1/16 there.
 static float exchanged(const SectionParams *params, float frames, float share)
 {
     float critical = sqrtf(2 * (float)params->tressfx_local_constraints_iterations * share);
@@ -60,7 +61,7 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
                   (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
     bool half = step->first && !faithful;
     step_drag_factors(rate, half ? step->dt / 2 : step->dt, &uniforms->decay, &uniforms->gain);
-    // TressFX counts in frames; what it gives per frame is meant for one of 1/60 s.
+    // TressFX's parameters are per frame of 1/60 s.
     float frames = (float)(step->dt * (double)params->tressfx_damping_rate);
     float per_frame = faithful ? 1 : frames, per_frame2 = per_frame * per_frame;
     float odds = step_style_odds(params), most = params->tressfx_local_max;
@@ -94,7 +95,7 @@ static void define(ShaderDefine *defines, const SectionParams *params)
     defines[0] = (ShaderDefine){"TRESSFX4", is_faithful(params)};
 }
 
-// Loops over one strand: to predict and to write; a local pass; a pass of the lengths.
+// The number of loops over a strand: predicting, writing, local passes and length passes.
 static int64_t count_loops(const SectionParams *params)
 {
     int64_t lengths = is_faithful(params)

@@ -49,13 +49,13 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
 
 StyleSpring step_style_spring(const StepParams *uniforms, double h, const SectionParams *params)
 {
-    const double most_style = 0.999999; // springs of 1 would be infinitely stiff
+    const double most_style = 0.999999; // a style of 1 would make the springs infinitely stiff
     double style = (double)params->style, stiffness = (double)params->style_stiffness;
     double decay = (double)uniforms->decay, gain = (double)uniforms->gain;
     double w = style * stiffness * h * gain;
     double finite = fmin(style, most_style), k = stiffness * finite / (1 - finite);
-    // Two half kicks about a spring at rest add (1 + e^{-ch})/(1 + e^{-2ch}) gain each: as much of
-    // the spring keeps the balance exact.
+    // At rest, each of the two half kicks adds (1 + e^{-ch})/(1 + e^{-2ch}) gain. Scaling the
+    // spring by the same factor keeps the balance exact.
     double z = k * h * gain * (1 + decay) / (1 + decay * decay);
     double keep = 1 / (1 + 2 * z);
     return (StyleSpring){.stiffness = (float)k,
@@ -108,8 +108,9 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
     gpu_dispatch(pass->limits, strand_count, (uint64_t)pass->limits->sizes.strands, 1);
 }
 
-// Whether the hair's strands may stay in registers for a step: all have at most `most` vertices,
-// and of few different counts, since each costs a compilation (0.2 to 0.7 s on a CPU driver).
+// Whether the strands can stay in registers during a step. They must have at most `most` vertices,
+// and at most MOST_COUNTS different vertex counts, because each count costs a compilation (0.2 to
+// 0.7 s on a CPU driver).
 static bool fits_registers(const Hair *hair, uint32_t most)
 {
     enum { MOST_COUNTS = 2 };
@@ -142,7 +143,8 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 
-// Batches of equal vertex count, and all of them if strands go through memory, share a program.
+// Whether batch i uses the same program as the batch before: if they have the same vertex count, or
+// if strands are kept in memory.
 static bool is_shared(const StepPrograms *programs, const Hair *hair, uint32_t i)
 {
     return i > 0 && programs->leads[i] == programs->leads[i - 1] &&
@@ -168,7 +170,7 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
     if (!programs->programs || !programs->leads)
         result = error_set(error, RESULT_FAILED, "no memory for a solver");
     for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i) {
-        // At least the tip is free.
+        // at least the tip must be free
         programs->leads[i] = hair->batches[i].vertex_count > 2 ? options->lead : 0;
         if (is_shared(programs, hair, i))
             programs->programs[i] = programs->programs[i - 1];

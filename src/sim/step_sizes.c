@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "sim/step_sizes.h"
 
-// CPU drivers keep what no longer fits their 16 vector registers on the stack, in the first level
-// of cache, so their limits are where compilation takes longer than it saves. A GPU's lane has 128
-// registers where 8 waves shall hide each other's latency, and none in reach beyond 256: its limits
-// are what scripts/gpu-statistics finds to fit for every variant (docs/gpu_development.md). Where
-// few vertices would fit, memory serves as well: sweeps of chain, hybrid and emulation keep 11 to
-// 16 numbers a vertex.
+// Numbers of vertices up to which a strand stays in registers. CPU drivers spill what does not fit
+// their 16 vector registers to the stack, which the first-level cache holds, so their limits are
+// where compilation takes longer than it saves. On a GPU a lane has 128 registers if 8 waves are to
+// hide latency, and 256 at most; the limits are those that fit for every variant, found by
+// scripts/gpu-statistics (docs/gpu_development.md). Solvers for which only a few vertices would fit
+// stay in memory: chain, hybrid and emulation keep 11 to 16 numbers per vertex.
 const StepSizes STEP_SIZES[STEP_SHAPES][GPU_KINDS] = {
     [STEP_IN_MEMORY] = {[GPU_CPU_DRIVER] = {0, 1}, [GPU_HARDWARE] = {0, 1}},
     [STEP_CHAIN] = {[GPU_CPU_DRIVER] = {16, 1}, [GPU_HARDWARE] = {0, 1}},

@@ -9,12 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Cells of the longest side of the groom for each cubic root of its particles; room about it, in
-// lengths of the longest strand; cells in all; particles of a grain, and its length in cells.
+// FINENESS: cells along the groom's longest side, per cubic root of the number of particles. ROOM:
+// margin around the groom, in lengths of the longest strand. GRAIN_CELLS: length of a grain in
+// cells. MOST_GRAIN: most particles of a grain.
 static const double FINENESS = 1, ROOM = 0.3, GRAIN_CELLS = 3;
 enum { LEAST_SIDE = 8, MOST_SIDE = 32, MOST_CELLS = 60000, MOST_GRAIN = 4, PUSHES = 2 };
-// With --volume 1: the share of a velocity within a dense cell that friction takes in FRICTION_S,
-// and the cells a second at which hair leaves one.
+// At --volume 1. FRICTION: the share of a velocity that friction removes within a dense cell in
+// FRICTION_S. APART: the speed, in cells per second, at which hair leaves a dense cell.
 static const double FRICTION = 0.4, FRICTION_S = 1.0 / 60, APART = 15;
 
 // --- The grid.
@@ -25,7 +26,7 @@ static uint32_t cells_along(const Hair *hair, int axis, double room, double spac
     return (uint32_t)ceil((size + 2 * room) / spacing) + 3;
 }
 
-// Chooses cells: as fine as there are particles for, as many as are affordable.
+// Chooses the grid: as fine as the number of particles allows, with at most MOST_CELLS cells.
 static void place_grid(Volume *volume)
 {
     const Hair *hair = volume->hair;
@@ -55,7 +56,7 @@ static void place_grid(Volume *volume)
     volume->grain = (uint32_t)fmin(fmax(grain, 1), MOST_GRAIN);
 }
 
-// Rows that take a place in the world to cells, with the head at `head`.
+// Sets the rows of the matrix from the world to cells, with the head at `head`.
 static void place_axes(VolumeParams *params, const float low[3], const HeadPose *head)
 {
     for (int k = 0; k < 3; ++k) {
@@ -68,11 +69,11 @@ static void place_axes(VolumeParams *params, const float low[3], const HeadPose 
     }
 }
 
-// --- What is dense at rest, by the shaders' rules.
+// --- The density at rest, by the same rules as in the shaders.
 
 typedef float Float4[4];
 
-// The cell of the grain that begins with particle j; -1: none.
+// The cell of the grain that begins with particle j; -1 if it is outside.
 static int grain_cell(const Volume *volume, const HairBatch *batch, uint32_t s, uint32_t j,
                       const Float4 *position)
 {
@@ -85,7 +86,8 @@ static int grain_cell(const Volume *volume, const HairBatch *batch, uint32_t s, 
     return grain_cell_at(at[0], at[1], at[2], size[0], size[1], size[2]);
 }
 
-// Calls of both: once to count particles, then to write what their cells have.
+// Visits all grains. Called once with `count` to count the particles of each cell, and once with
+// `rest` to store each particle's cell value `own`.
 static Result for_grains(Volume *volume, uint32_t *count, const uint32_t *own, uint32_t *rest,
                          uint32_t i, Error *error)
 {
@@ -108,7 +110,7 @@ static Result for_grains(Volume *volume, uint32_t *count, const uint32_t *own, u
     return RESULT_OK;
 }
 
-// Cells at the edge are empty.
+// Cells at the edge stay empty.
 static void smooth(const Volume *volume, const uint32_t *count, uint32_t *own)
 {
     uint32_t row = volume->step.size[0], slice = row * volume->step.size[1];
@@ -151,7 +153,7 @@ static Result measure_rest(Volume *volume, const GpuLimits *limits, Error *error
     return result;
 }
 
-// --- Life.
+// --- Creation and destruction.
 
 static Result create_passes(Volume *volume, const Gpu *gpu, Error *error)
 {
@@ -254,7 +256,7 @@ static void begin(Volume *volume, const SolverStep *step)
             (float)step->dt;
 }
 
-// Runs a pass on each batch's strands and state.
+// Runs a pass over the strands of each batch.
 static void run_strands(Volume *volume, StepPass *pass)
 {
     for (uint32_t i = 0; i < volume->hair->batch_count; ++i) {
