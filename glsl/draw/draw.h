@@ -6,7 +6,8 @@
 #pragma once
 #endif
 
-#define MAX_LIGHTS 8
+#define MAX_LIGHTS   8
+#define AROUND_TERMS 7 // of an environment, beside its sky and ground
 
 // Uniform blocks: BIND_DRAW, and BIND_MATERIAL (material.h).
 // Shader storage. shared.h has the bindings of other passes; no pass uses more than eight.
@@ -119,8 +120,10 @@ UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
     vec4 light_cone[MAX_LIGHTS];  // x - y cos(angle to the axis): a spot's light before clamping to
                                   // 0..1
     vec4 sky, ground;             // linear RGB of the ambient light from above, from below
-    vec4 background;              // linear RGB, premultiplied; opacity
-    vec4 head_rotation;           // quaternion x y z w
+    vec4 around[AROUND_TERMS]; // linear RGB: see lamp_bent; w of the first: 1 with an environment,
+                               // of the next three: the environment's first axis
+    vec4 background;           // linear RGB, premultiplied; opacity
+    vec4 head_rotation;        // quaternion x y z w
     vec4 head_translation;
     vec4 mesh_color;     // linear RGB; w: ambient share
     float width, height; // of the picture, px

@@ -13,8 +13,7 @@ const vec3 FLOOR_UP = vec3(0.0, 1.0, 0.0);
 // Linear, premultiplied colour of the floor.
 vec4 floor_shown(vec3 x, float there)
 {
-    vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP, 1.0), light = around,
-         sent = around;
+    vec3 around = draw_params.mesh_color.a * light_around(FLOOR_UP), light = around, sent = around;
 #if SHADOW
     shadow_find_on(x, FLOOR_UP);
 #endif

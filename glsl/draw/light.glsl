@@ -3,7 +3,6 @@
 // the following slots. The order within both groups is not fixed, and no result depends on it.
 
 #include "kernel/cell.h"
-#include "kernel/lamp.h"
 
 ivec3 cells = ivec3(light_params.count.xyz);
 float side = light_params.low.w; // m
@@ -37,18 +36,6 @@ int ordinate_address(int d, int slot) { return 3 * (d * int(light_params.room) +
 int wide_address(int d, int channel)
 {
     return (d / LIGHT_LANES * 3 + channel) * LIGHT_LANES + d % LIGHT_LANES;
-}
-
-// The ambient light of an ordinate: sky from above (+y of the world), ground from below,
-// interpolated between.
-vec3 light_from_around(int d)
-{
-    vec3 out_of = light_params.ordinate[d].xyz;
-    float up = -(light_params.turn[0].y * out_of.x + light_params.turn[1].y * out_of.y +
-                 light_params.turn[2].y * out_of.z);
-    vec4 sky = draw_params.sky, ground = draw_params.ground;
-    return vec3(lamp_around(sky.r, ground.r, up), lamp_around(sky.g, ground.g, up),
-                lamp_around(sky.b, ground.b, up));
 }
 
 // Rotates components so that axis `axis` comes first.

@@ -75,6 +75,7 @@ UNIFORM_BLOCK(LightParams, light_params, BIND_LIGHT)
     uvec4 count;          // xyz: cells along each axis; w: all cells
     vec4 way[MAX_LIGHTS]; // xyz: unit, to the light, or a lamp's place, m; w: map, -1: none
     vec4 ordinate[LIGHT_ORDINATES]; // xyz: unit direction in which light travels
+    vec4 around[LIGHT_ORDINATES];   // rgb: ambient light that arrives in each
     vec4 eye;                 // xyz: m, in these axes; w: opacity to the eye over opacity to light
     vec4 eye_axis;            // xyz: unit direction of LIGHT_GATHER's table; w: nearest ordinate
     vec4 albedo[LIGHT_KINDS]; // rgb: for light perpendicular to the fibre

@@ -41,7 +41,8 @@ int slot_near(ivec3 at) { return slots[cell_address(clamp(at, ivec3(0), cells - 
 
 vec3 light_at(int slot, int d)
 {
-    return slot < 0 ? light_from_around(d) : texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
+    return slot < 0 ? light_params.around[d].rgb
+                    : texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
 }
 
 vec3 show(vec3 x, vec3 t)

@@ -115,7 +115,7 @@ void main()
 {
     int lane = int(gl_LocalInvocationID.x), wide = count.y, tall = count.z;
     if (state.done != 0u) return;
-    vec4 around = vec4(sweep.y == 0 ? vec3(0.0) : light_from_around(d), 0.0);
+    vec4 around = vec4(sweep.y == 0 ? vec3(0.0) : light_params.around[d].rgb, 0.0);
     for (int i = lane; i < 2 * int(light_params.plane); i += GROUP_SIZE)
         plane[2 * d * int(light_params.plane) + i] = around;
     vec3 sum = vec3(0.0);

@@ -47,24 +47,56 @@ vec3 light_reaching(int i, vec3 x, out vec3 to_light)
     return light_sent(i, x, to_light) * light_left(i);
 }
 
-// The mean ambient light on surfaces whose unit normals spread around n; `share` is the length of
-// their mean normal, 1 for a plane.
-vec3 light_around(vec3 n, float share)
+// The mean ambient light between sky and ground on a surface whose unit normal has this y.
+vec3 light_upright(float up)
 {
-    float up = share * n.y;
     vec4 sky = draw_params.sky, ground = draw_params.ground;
     return vec3(lamp_around(sky.r, ground.r, up), lamp_around(sky.g, ground.g, up),
                 lamp_around(sky.b, ground.b, up));
 }
 
+// What an environment adds to it: terms of the first degree in the normal, and of the second.
+vec3 light_aside(vec3 n)
+{
+    vec4 x = draw_params.around[0], z = draw_params.around[1];
+    return vec3(lamp_aside(x.r, z.r, n.x, n.z), lamp_aside(x.g, z.g, n.x, n.z),
+                lamp_aside(x.b, z.b, n.x, n.z));
+}
+
+vec3 light_bent(vec3 n)
+{
+    vec4 xy = draw_params.around[2], yz = draw_params.around[3], zx = draw_params.around[4],
+         level = draw_params.around[5], up = draw_params.around[6];
+    return vec3(lamp_bent(xy.r, yz.r, zx.r, level.r, up.r, n.x, n.y, n.z),
+                lamp_bent(xy.g, yz.g, zx.g, level.g, up.g, n.x, n.y, n.z),
+                lamp_bent(xy.b, yz.b, zx.b, level.b, up.b, n.x, n.y, n.z));
+}
+
+// The mean ambient light on a surface with the unit normal n.
+vec3 light_around(vec3 n)
+{
+    vec3 light = light_upright(n.y);
+    if (draw_params.around[0].w > 0.0)
+        light = max(light + light_aside(n) + light_bent(n), vec3(0.0));
+    return light;
+}
+
 // The ambient light on the visible side of a fibre, whose unit tangent has the cosine `eye` with
-// the unit vector to the eye. A normal at the angle a from the middle of this side has the weight
-// cos a, so the mean normal is PI/4 times the middle one.
+// the unit vector to the eye. A normal at the angle a from the middle m of this side has the weight
+// cos a. So the mean of a term of the first degree is PI/4 times its value at m. The mean of a term
+// of the second degree is a third of the difference between its values at m and at the tangent,
+// because its values at three perpendicular normals add up to 0.
 vec3 light_around_fibre(vec3 tangent, vec3 to_eye, float eye)
 {
 #if LIGHTS
     vec3 side = to_eye - eye * tangent;
-    return light_around(side * inversesqrt(max(dot(side, side), 1e-12)), 0.25 * PI);
+    side *= inversesqrt(max(dot(side, side), 1e-12));
+    vec3 light = light_upright(0.25 * PI * side.y);
+    if (draw_params.around[0].w > 0.0)
+        light = max(light + 0.25 * PI * light_aside(side) +
+                        (light_bent(side) - light_bent(tangent)) / 3.0,
+                    vec3(0.0));
+    return light;
 #else
     return draw_params.sky.rgb;
 #endif

@@ -22,7 +22,7 @@ vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
     vec4 own = draw_params.mesh_color;
     vec3 into = vec3(lamp_around_into(open, own.r), lamp_around_into(open, own.g),
                      lamp_around_into(open, own.b)),
-         light = own.a * light_around(n, 1.0) * into, highlight = vec3(0.0);
+         light = own.a * light_around(n) * into, highlight = vec3(0.0);
 #if SHADOW
     x += shadow_params.mesh_lift * n; // avoids self-shadowing
     shadow_find_on(x, n);

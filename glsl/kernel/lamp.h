@@ -28,6 +28,21 @@ SHARED_FUNCTION float lamp_around(float sky, float ground, float up)
     return ground + (0.5f + 0.5f * up) * (sky - ground);
 }
 
+// What an environment adds to the light between its sky and ground, which are its terms of 1 and y:
+// the terms of x, z, xy, yz, zx, x^2 - z^2 and 3 y^2 - 1 of the unit normal. First x and z.
+SHARED_FUNCTION float lamp_aside(float by_x, float by_z, float x, float z)
+{
+    return by_x * x + by_z * z;
+}
+
+// The others.
+SHARED_FUNCTION float lamp_bent(float xy, float yz, float zx, float level, float upright, float x,
+                                float y, float z)
+{
+    return xy * (x * y) + yz * (y * z) + zx * (z * x) + level * (x * x - z * z) +
+           upright * (3.0f * y * y - 1.0f);
+}
+
 // The ambient light that a surface of this colour shows, over what a white, unoccluded surface
 // would show. It sees the share `open` of the sky; the rest of its view is assumed to have about
 // its own colour and brightness and to reflect light on it.

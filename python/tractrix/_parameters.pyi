@@ -208,8 +208,8 @@ class Parameters(TypedDict, total=False):
     """angle (360 if no number follows) by which the camera turns over the sequence, which lasts 6 s unless --frames or
     --fps is given [-1000000 to 1000000 deg; default 0]"""
     turn_lights: bool
-    """lights turn with the turntable's camera, as if the hair turned in front of it; sky and ground stay [default
-    false]"""
+    """lights and --environment turn with the turntable's camera, as if the hair turned in front of it; sky and ground
+    stay [default false]"""
     ease_in: float
     """share of the sequence in which the turntable accelerates [0 to 1; default 0]"""
     ease_out: float
@@ -286,6 +286,13 @@ class Parameters(TypedDict, total=False):
     ground: Union[Numbers, str]
     """color of the ambient light from below, sRGB; directions between sky and ground get a mixture [0 to 1; default
     #3a3836]"""
+    environment: Path
+    """equirectangular .exr or .pfm file with the light from all around, instead of --sky, --ground and the lights of
+    the look; its middle lies in the direction -z [default none]"""
+    environment_strength: float
+    """factor of the light of --environment [0 to 1000000; default 1]"""
+    environment_turn: float
+    """angle by which --environment is turned about y, from -z towards -x [-1000000 to 1000000 deg; default 0]"""
     shadow: Literal["none", "approx", "dom"]
     """shadows of hair and mesh: approx (number of fibres estimated from the depth behind the first) or dom (deep
     opacity maps) [default dom]"""

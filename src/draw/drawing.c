@@ -133,6 +133,33 @@ void drawing_background(const RendererOptions *options, float light[4])
     light[3] = options->background[3];
 }
 
+// The two first terms of an environment are as a sky's and a ground's.
+static void set_environment(DrawParams *draw, const Ambient *ambient, float light)
+{
+    float terms[ENVIRONMENT_TERMS][3];
+    environment_around(ambient->environment, &ambient->axes, terms);
+    for (int k = 0; k < 3; ++k) {
+        draw->sky[k] = light * ambient->strength * (terms[0][k] + terms[1][k]);
+        draw->ground[k] = light * ambient->strength * (terms[0][k] - terms[1][k]);
+        for (int t = 0; t < AROUND_TERMS; ++t)
+            draw->around[t][k] = light * ambient->strength * terms[2 + t][k];
+        draw->around[1 + k][3] = ambient->axes.axis[0][k];
+    }
+    draw->around[0][3] = 1;
+}
+
+static void set_ambient(DrawParams *draw, const Ambient *ambient, float light)
+{
+    if (ambient && ambient->environment) {
+        set_environment(draw, ambient, light);
+        return;
+    }
+    for (int k = 0; k < 3; ++k) {
+        draw->sky[k] = light * (ambient ? linear_from_srgb(ambient->sky[k]) : 1);
+        draw->ground[k] = light * (ambient ? linear_from_srgb(ambient->ground[k]) : 1);
+    }
+}
+
 // Fills `draw` for the whole image; the members for a band are set later.
 static void fill_draw_params(const RendererOptions *options, const DrawnMesh *mesh,
                              const RenderFrame *frame, DrawParams *draw)
@@ -142,12 +169,9 @@ static void fill_draw_params(const RendererOptions *options, const DrawnMesh *me
                      options->height * options->samples);
     float light = exp2f(options->exposure);
     drawing_set_lights(draw, frame->lights, frame->light_count);
-    for (int k = 0; k < 3; ++k) {
-        draw->sky[k] = light * (frame->ambient ? linear_from_srgb(frame->ambient->sky[k]) : 1);
-        draw->ground[k] =
-            light * (frame->ambient ? linear_from_srgb(frame->ambient->ground[k]) : 1);
+    set_ambient(draw, frame->ambient, light);
+    for (int k = 0; k < 3; ++k)
         for (uint32_t i = 0; i < frame->light_count; ++i) draw->light_color[i][k] *= light;
-    }
     memcpy(draw->depth_range, options->depth_range, sizeof options->depth_range);
     drawing_background(options, draw->background);
     memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
@@ -236,7 +260,8 @@ static bool lights_are_simple(const RenderFrame *frame)
     for (uint32_t i = 0; i < frame->light_count; ++i)
         if (frame->lights[i].kind != LIGHT_DIRECTIONAL) return false;
     const Ambient *ambient = frame->ambient;
-    return !ambient || memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0;
+    return !ambient || (!ambient->environment &&
+                        memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0);
 }
 
 void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle)

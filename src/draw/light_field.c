@@ -81,12 +81,39 @@ bool light_field_set_box(LightField *field, int cells, const float box[BOX])
     return true;
 }
 
+// From above (+y of the world) comes the sky, from below the ground, evenly between them; or an
+// environment's light, as bright in the mean as both.
+static void find_around(LightField *field, const GridScene *scene)
+{
+    enum { LANES = ORDINATE_LANES };
+    const DrawParams *draw = scene->draw;
+    float way[ORDINATES][3], light[ORDINATES][3], mean[3] = {0};
+    bool uneven = draw->around[0][3] > 0;
+    for (int d = 0; d < ORDINATES; ++d)
+        for (int n = 0; n < 3; ++n) {
+            way[d][n] = 0;
+            for (int k = 0; k < 3; ++k) way[d][n] -= field->lattice.turn[k][n] * ORDINATE[k][d];
+        }
+    if (uneven)
+        environment_spread(scene->ambient->environment, &scene->ambient->axes,
+                           (const float(*)[3])way, ORDINATES, light);
+    for (int d = 0; d < ORDINATES && uneven; ++d)
+        for (int c = 0; c < 3; ++c) mean[c] += light[d][c] / ORDINATES;
+    for (int d = 0; d < ORDINATES; ++d)
+        for (int c = 0; c < 3; ++c)
+            field->around[(d / LANES * 3 + c) * LANES + d % LANES] =
+                uneven ? light[d][c] / fmaxf(mean[c], 1e-30f) *
+                             lamp_around(draw->sky[c], draw->ground[c], 0)
+                       : lamp_around(draw->sky[c], draw->ground[c], way[d][1]);
+}
+
 void light_field_find_lights(LightField *field, const GridScene *scene)
 {
     const LightLattice *lattice = &field->lattice;
     float middle[3] = {0}, way[3];
     field->lights = scene->suns ? scene->draw->light_count : 0;
     field->tinted = false;
+    find_around(field, scene);
     for (uint32_t h = 0; h < scene->hair_count; ++h)
         field->tinted |= scene->hair[h].caster.paint != NULL;
     for (int k = 0; k < 3; ++k)

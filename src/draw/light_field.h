@@ -40,8 +40,9 @@ typedef struct LightField {
     int lights;
     bool tinted; // hair has paint
     float to_light[MAX_LIGHTS]
-                  [3]; // lattice's axes: unit, of lights afar and of lamps to the middle
-    float *walls;      // [axes][cells, and one more around]: LightBlocks.open, 1 beside the lattice
+                  [3];       // lattice's axes: unit, of lights afar and of lamps to the middle
+    float around[GRID_WIDE]; // radiance by ordinate: what comes from all around
+    float *walls; // [axes][cells, and one more around]: LightBlocks.open, 1 beside the lattice
     size_t wall_room;
     bool walled;
     GridKind kinds[LIGHT_GRID_KINDS];
@@ -57,7 +58,7 @@ void light_field_destroy(LightField *field);
 void light_field_find_turn(LightField *field, const GridScene *scene);
 bool light_field_set_box(LightField *field, int cells, const float box[LIGHT_BOX_WORDS]);
 
-// Fills in the lights, and whether hair has paint.
+// Fills in the lights, the light from all around, and whether hair has paint.
 void light_field_find_lights(LightField *field, const GridScene *scene);
 
 // The direction to light i at x (world), and the share of the light's colour there; as light_share

@@ -6,6 +6,7 @@
 #include "draw/fibre_lobes.h"
 #include "draw/light_blocks.h"
 #include "draw/mapped_caster.h"
+#include "draw/renderer_options.h"
 
 #include "glsl/draw/draw.h"
 
@@ -23,6 +24,7 @@ typedef struct GridScene {
     const FibreLobes *kinds; // [kind_count]
     int kind_count;          // 1 .. LIGHT_GRID_KINDS
     const DrawParams *draw;  // lights, sky, ground, eye
+    const Ambient *ambient;  // its environment; NULL: none
     // That tells light_grid_solve what is left of lights (lanes/shadow.h); NULL: no light has a
     // map.
     const struct LaneShadow *shadow;

@@ -6,6 +6,7 @@
 #include "draw/shadow_frames.h"
 #include "image/image.h"
 #include "scene/camera.h"
+#include "scene/environment.h"
 #include "scene/floor.h"
 #include "scene/scene.h"
 
@@ -67,9 +68,13 @@ typedef struct RenderItem {
     float radius;
 } RenderItem;
 
-// Ambient light, sRGB 0..1: from above (+y) and from below, interpolated between them.
+// Ambient light: an environment times a factor, or, where that is NULL, sRGB 0..1 from above (+y)
+// and from below, interpolated between them.
 typedef struct Ambient {
     float sky[3], ground[3];
+    const Environment *environment;
+    EnvironmentAxes axes;
+    float strength;
 } Ambient;
 
 // Data that all items of an image share.

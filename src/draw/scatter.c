@@ -29,7 +29,8 @@ bool scatter_same_lights(const DrawParams *a, const DrawParams *b)
            memcmp(a->light_axis, b->light_axis, sizeof a->light_axis) == 0 &&
            memcmp(a->light_cone, b->light_cone, sizeof a->light_cone) == 0 &&
            memcmp(a->sky, b->sky, sizeof a->sky) == 0 &&
-           memcmp(a->ground, b->ground, sizeof a->ground) == 0;
+           memcmp(a->ground, b->ground, sizeof a->ground) == 0 &&
+           memcmp(a->around, b->around, sizeof a->around) == 0;
 }
 
 uint32_t scatter_step(const ScatterOptions *options, const BackendFrame *frame)
@@ -43,6 +44,7 @@ GridScene scatter_scene(const ScatterOptions *options, const BackendFrame *frame
                         const ShadowParams *shadows)
 {
     GridScene scene = {.draw = &frame->drawing->whole,
+                       .ambient = frame->frame->ambient,
                        .cells = options->cells,
                        .step = scatter_step(options, frame),
                        .suns = options->kind == SCATTER_GRID,

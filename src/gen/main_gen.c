@@ -8,6 +8,7 @@
 #include "gen/fur.h"
 #include "gen/head_motion.h"
 #include "gen/strands_make.h"
+#include "gen/studio_light.h"
 #include "mesh/head.h"
 #include "mesh/mesh_read.h"
 #include "mesh/obj.h"
@@ -21,7 +22,7 @@ typedef struct Command {
     int kind, shape, count, vertices, set, seed;
     double length, length_variation, curl_radius, curl_turns, curl_disorder;
     GenOutput output;
-    const char *mesh, *motion;
+    const char *mesh, *motion, *environment;
 } Command;
 
 static const char KINDS[] = "random|straight|curls|fur";
@@ -54,6 +55,8 @@ static const Option OPTIONS[] = {
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0, "also write the shape, as Wavefront OBJ"},
     {"motion", 0, OPTION_STRING, AT(motion), "FILE.npz", 0, 0,
      "also write a moving head, which turns, nods, speaks and shrugs, for tractrix-render --mesh"},
+    {"environment", 0, OPTION_STRING, AT(environment), "FILE.pfm", 0, 0,
+     "also write the light of a studio with three soft boxes, for tractrix-render --environment"},
     GEN_OPTION_QUIET(AT(output.quiet)),
 };
 
@@ -134,7 +137,7 @@ static Result check_effect(const Command *command, Error *error)
     if (command->set >= 0 && shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
                          SET_NAMES[command->set], shaping);
-    if (!command->output.path && !command->mesh && !command->motion)
+    if (!command->output.path && !command->mesh && !command->motion && !command->environment)
         return error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     return RESULT_OK;
 }
@@ -246,19 +249,30 @@ static Result write_motion(const Command *command, Error *error)
     return result;
 }
 
+static Result write_environment(const Command *command, Error *error)
+{
+    TRY(studio_light_write(command->environment, error));
+    if (!command->output.quiet)
+        fprintf(gen_messages(&command->output), "%s: %d x %d px\n",
+                quote(command->environment).text, 2 * STUDIO_LIGHT_HEIGHT, STUDIO_LIGHT_HEIGHT);
+    return RESULT_OK;
+}
+
 static Result write_all(const Command *command, Error *error)
 {
     StrandsRecipe recipe = make_recipe(command);
     ScalpShape shape = command->set >= 0 ? SCALP_SPHERE : recipe.shape;
     const PathUse uses[] = {{"-o", command->output.path, PATH_WRITTEN, NULL},
                             {"--mesh", command->mesh, PATH_WRITTEN, NULL},
-                            {"--motion", command->motion, PATH_WRITTEN, NULL}};
-    TRY(paths_claim(uses, 3, error));
+                            {"--motion", command->motion, PATH_WRITTEN, NULL},
+                            {"--environment", command->environment, PATH_WRITTEN, NULL}};
+    TRY(paths_claim(uses, sizeof uses / sizeof *uses, error));
     activity_start(stderr, command->output.quiet);
     activity_set("growing hair");
     if (command->output.path) TRY(write_hair(command, &recipe, error));
     if (command->mesh) TRY(write_mesh(command, shape, error));
     if (command->motion) TRY(write_motion(command, error));
+    if (command->environment) TRY(write_environment(command, error));
     return RESULT_OK;
 }
 

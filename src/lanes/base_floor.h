@@ -69,10 +69,10 @@ SIMD_INLINE void base_floor_shade(const BaseFloor *floor, const BaseView *view,
     const DrawParams *draw = view->draw;
     float normal[3][W], left[MAX_LIGHTS][W], to_light[3][W], share[W], light[3][W], sent[3][W];
     for (int k = 0; k < W; ++k) normal[0][k] = normal[2][k] = 0, normal[1][k] = 1;
-    for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < W; ++k)
-            light[c][k] = sent[c][k] =
-                draw->mesh_color[3] * lamp_around(draw->sky[c], draw->ground[c], 1);
+    for (int c = 0; c < 3; ++c) {
+        base_around(draw, c, (const float(*)[W])normal, light[c]);
+        for (int k = 0; k < W; ++k) light[c][k] = sent[c][k] = draw->mesh_color[3] * light[c][k];
+    }
     base_left(floor->shadow, draw->light_count, points->x, (const float(*)[W])normal, 0, FLOOR_TAPS,
               left);
     for (int i = 0; i < draw->light_count; ++i) {

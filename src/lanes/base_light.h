@@ -32,6 +32,18 @@ SIMD_INLINE void base_ways(const BaseView *view, int x, int y, float way[3][W])
     }
 }
 
+// The mean light from everywhere, of a channel, on surfaces with these unit normals.
+SIMD_INLINE void base_around(const DrawParams *draw, int c, const float n[3][W], float light[W])
+{
+    const float(*a)[4] = (const float(*)[4])draw->around;
+    for (int k = 0; k < W; ++k) light[k] = lamp_around(draw->sky[c], draw->ground[c], n[1][k]);
+    for (int k = 0; a[0][3] > 0 && k < W; ++k)
+        light[k] = simd_max(
+            light[k] + lamp_aside(a[0][c], a[1][c], n[0][k], n[2][k]) +
+                lamp_bent(a[2][c], a[3][c], a[4][c], a[5][c], a[6][c], n[0][k], n[1][k], n[2][k]),
+            0);
+}
+
 // The share of each of the first `lights` lights that reaches points x of surfaces with these unit
 // normals: see lane_shadow_left_on. `shadow` may be NULL.
 SIMD_INLINE void base_left(const LaneShadow *shadow, int lights, const float x[3][W],

@@ -88,14 +88,14 @@ SIMD_INLINE void light_points(const Lighting *lighting, const Points *points, bo
     const DrawParams *draw = lighting->view.draw;
     const float *color = draw->mesh_color;
     float left[MAX_LIGHTS][W], to_light[3][W], share[W], diffuse[W], highlight[W], over[3][W];
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
+        base_around(draw, c, points->normal, light[c]);
         for (int k = 0; k < W; ++k) {
             float open = skin ? points->open[k] : 1;
-            light[c][k] = color[3] *
-                          lamp_around(draw->sky[c], draw->ground[c], points->normal[1][k]) *
-                          lamp_around_into(open, color[c]);
+            light[c][k] = color[3] * light[c][k] * lamp_around_into(open, color[c]);
             over[c][k] = 0;
         }
+    }
     base_left(lighting->shadow, draw->light_count, points->x, points->normal,
               skin ? FLOAT(SKIN_WRAP) : 0, MESH_TAPS, left);
     for (int i = 0; i < draw->light_count; ++i) {

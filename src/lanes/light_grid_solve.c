@@ -34,17 +34,18 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     TRY(make_planes(state, error));
     TRY(light_field_make_scatter(&state->field, scene, state->class, state->filled, error));
     bool sky = light_scene_has_sky(scene->draw);
-    light_grid_sweep(state, scene, sky, true);
+    light_grid_sweep(state, sky, true);
     float all[3] = {0};
     light_grid_needs_more(state, all);
     for (int order = 1; order <= scene->orders; ++order) {
         light_grid_scatter(state);
-        light_grid_sweep(state, scene, false, false);
+        light_grid_sweep(state, false, false);
         bool more = light_grid_needs_more(state, all);
         if (order > 1 && !more) break;
     }
     light_grid_close(state, scene->orders > 1);
-    light_grid_find_around(state, scene);
+    memcpy(state->light + (size_t)state->active * GRID_WIDE, state->field.around,
+           sizeof state->field.around);
     return RESULT_OK;
 }
 

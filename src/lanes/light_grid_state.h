@@ -138,10 +138,8 @@ bool light_grid_find_spans(LightGridState *state);
 
 // Sweeps one order: `source`, and with `sky` also the environment's light. Adds it to `light`, or
 // with `fresh` begins `light`. light_grid_scatter makes the source of the next order.
-void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh);
+void light_grid_sweep(LightGridState *state, bool sky, bool fresh);
 void light_grid_scatter(LightGridState *state);
-// The light of points that have no cell near them: the environment's.
-void light_grid_find_around(LightGridState *state, const GridScene *scene);
 // Adds the light of the last order that reaches hair to `all`. Returns whether light_grid_close
 // would have to extrapolate too much of the light.
 bool light_grid_needs_more(const LightGridState *state, float all[3]);

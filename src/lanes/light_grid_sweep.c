@@ -4,8 +4,6 @@
 // before. Each thread processes the directions of some groups.
 #include "lanes/light_grid_state.h"
 
-#include "glsl/kernel/lamp.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +11,6 @@ enum { TAPS = 3 };
 
 typedef struct Sweep {
     LightGridState *state;
-    const GridScene *scene;
     bool sky, fresh;
     int parts;
 } Sweep;
@@ -27,26 +24,6 @@ typedef struct GroupWay {
     ptrdiff_t stride[3], step[3]; // of slots and of walls, along `main` and the axes across
     const float *walls[3];        // transmittance of the mesh along these axes; NULL without a mesh
 } GroupWay;
-
-// The ambient light of the directions of a group: sky from above (+y of the world), ground from
-// below, interpolated between.
-static void find_sky(const DrawParams *draw, const LightLattice *lattice, int group,
-                     float sky[GROUP_WIDE])
-{
-    for (int l = 0; l < GRID_LANES; ++l) {
-        float up = 0;
-        for (int k = 0; k < 3; ++k) up -= lattice->turn[k][1] * ORDINATE[k][group * GRID_LANES + l];
-        for (int c = 0; c < 3; ++c)
-            sky[c * GRID_LANES + l] = lamp_around(draw->sky[c], draw->ground[c], up);
-    }
-}
-
-void light_grid_find_around(LightGridState *state, const GridScene *scene)
-{
-    float *light = state->light + (size_t)state->active * GRID_WIDE;
-    for (int group = 0; group < ORDINATE_GROUPS; ++group)
-        find_sky(scene->draw, &state->field.lattice, group, light + group * GROUP_WIDE);
-}
 
 static void find_strides(const LightGridState *state, GroupWay *way)
 {
@@ -78,7 +55,8 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
         }
     }
     memset(way->sky, 0, sizeof way->sky);
-    if (sweep->sky) find_sky(sweep->scene->draw, &sweep->state->field.lattice, group, way->sky);
+    if (sweep->sky)
+        memcpy(way->sky, sweep->state->field.around + (size_t)group * GROUP_WIDE, sizeof way->sky);
     find_strides(sweep->state, way);
 }
 
@@ -273,11 +251,11 @@ SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)
 
 SIMD_STAGE(sweep_groups, Sweep)
 
-void light_grid_sweep(LightGridState *state, const GridScene *scene, bool sky, bool fresh)
+void light_grid_sweep(LightGridState *state, bool sky, bool fresh)
 {
     int parts = state->parts < ORDINATE_GROUPS ? state->parts : ORDINATE_GROUPS;
     memcpy(state->sums[0], state->sums[1], sizeof state->sums[0]);
-    Sweep sweep = {state, scene, sky, fresh, parts};
+    Sweep sweep = {state, sky, fresh, parts};
     run_sweep_groups(&sweep, parts);
 }
 

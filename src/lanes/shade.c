@@ -157,6 +157,31 @@ SIMD_INLINE void find_eye(const MaterialParams *m, Spots *s, Eye *eye)
         }
 }
 
+// What an environment adds to it: light_around_fibre of lights.glsl.
+SIMD_INLINE void add_around(const DrawParams *draw, Spots *s, const Eye *eye, float color[3][W])
+{
+    const float(*a)[4] = (const float(*)[4])draw->around;
+    for (int i = 0; i < W; ++i) {
+        float side[3], tangent[3], square = 0;
+        for (int c = 0; c < 3; ++c) {
+            tangent[c] = s->tangent[c][i];
+            side[c] = s->to_eye[c][i] - eye->sine[i] * tangent[c];
+            square += side[c] * side[c];
+        }
+        float unit = 1 / sqrtf(simd_max(square, 1e-12f)), x = unit * side[0], y = unit * side[1],
+              z = unit * side[2];
+        for (int c = 0; c < 3; ++c) {
+            float bent = lamp_bent(a[2][c], a[3][c], a[4][c], a[5][c], a[6][c], x, y, z) -
+                         lamp_bent(a[2][c], a[3][c], a[4][c], a[5][c], a[6][c], tangent[0],
+                                   tangent[1], tangent[2]);
+            color[c][i] =
+                simd_max(color[c][i] + FLOAT(0.25 * PI) * lamp_aside(a[0][c], a[1][c], x, z) +
+                             FLOAT(1.0 / 3.0) * bent,
+                         0);
+        }
+    }
+}
+
 // The mean ambient light on the visible side of a fibre.
 SIMD_INLINE void find_around(const DrawParams *draw, Spots *s, const Eye *eye, float color[3][W])
 {
@@ -170,6 +195,7 @@ SIMD_INLINE void find_around(const DrawParams *draw, Spots *s, const Eye *eye, f
         for (int c = 0; c < 3; ++c)
             color[c][i] = draw->ground[c] + up * (draw->sky[c] - draw->ground[c]);
     }
+    if (draw->around[0][3] > 0) add_around(draw, s, eye, color);
 }
 
 // The share of each light that reaches the points, [light][lane].

@@ -155,7 +155,11 @@ static void set_params(const LightPasses *passes, const GridScene *scene)
         memcpy(params.turn[k], lattice->turn[k], sizeof lattice->turn[k]);
         params.low[k] = lattice->low[k];
         params.count[k] = (uint)lattice->count[k];
-        for (int d = 0; d < ORDINATES; ++d) params.ordinate[d][k] = ORDINATE[k][d];
+        for (int d = 0; d < ORDINATES; ++d) {
+            params.ordinate[d][k] = ORDINATE[k][d];
+            params.around[d][k] =
+                field->around[(d / ORDINATE_LANES * 3 + k) * ORDINATE_LANES + d % ORDINATE_LANES];
+        }
     }
     params.low[3] = lattice->side;
     params.count[3] = (uint)light_lattice_cells(lattice);

@@ -26,6 +26,7 @@ const FingerprintExempt FINGERPRINT_EXEMPT[] = {
     {"mesh_unit", "the mesh as it was read counts"},
     {"mesh_up", "the mesh as it was read counts"},
     {"color_map", "its content counts"},
+    {"environment", "its content counts"},
     {"output", "where images go"},
     {"first", "which frames are drawn"},
     {"last", "which frames are drawn"},
@@ -151,6 +152,9 @@ static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets
         TRY(add_map(hash, scene->sections[i].params.color_map, error));
     }
     *hash = add_mesh(*hash, &assets->mesh);
+    if (assets->environment.parts)
+        *hash = add_array(*hash, assets->environment.parts,
+                          ENVIRONMENT_PARTS * sizeof *assets->environment.parts);
     if (assets->body) *hash = add_number(*hash, assets->body->sequence.checksum);
     return RESULT_OK;
 }
@@ -232,6 +236,10 @@ void fingerprint_of_image(char text[FINGERPRINT_BYTES], const Fingerprint *finge
     }
     camera_lights(lights, scene, fingerprint->framing, frame);
     for (uint32_t i = 0; i < scene->light_count; ++i) hash = add_light(hash, &lights[i]);
+    if (scene->run.turn_lights) {
+        const EnvironmentAxes axes = camera_environment(scene, frame);
+        hash = add(hash, &axes, sizeof axes);
+    }
     caption_write(caption, scene, frame);
     write(text, add_text(hash, caption));
 }

@@ -223,7 +223,7 @@ static Result begin_by(Images *images, Renderer *renderer, int frame, const View
 {
     const Scene *scene = images->scene;
     const Simulation *simulation = images->simulation;
-    Ambient ambient;
+    Ambient ambient = {0};
     Light lights[SCENE_MAX_LIGHTS];
     camera_lights(lights, scene, images->framing, frame);
     RenderFrame drawn = {.view = view,
@@ -231,6 +231,10 @@ static Result begin_by(Images *images, Renderer *renderer, int frame, const View
                          .light_count = scene->light_count,
                          .ambient = &ambient,
                          .revision = 1 + simulation->changes};
+    if (images->assets->environment.parts)
+        ambient = (Ambient){.environment = &images->assets->environment,
+                            .axes = camera_environment(scene, frame),
+                            .strength = scene->run.environment_strength};
     memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
     memcpy(drawn.head_rotation, simulation->head.rotation, sizeof drawn.head_rotation);

@@ -195,6 +195,8 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(load_section(assets, scene, i, messages, verbose, error));
+    if (*scene->run.environment)
+        TRY(environment_read(&assets->environment, scene->run.environment, error));
     return load_mesh(assets, scene, messages, error);
 }
 
@@ -205,6 +207,7 @@ void assets_destroy(Assets *assets)
     free(assets->strands);
     free(assets->reports);
     mesh_destroy(&assets->mesh);
+    environment_destroy(&assets->environment);
     if (assets->body) body_destroy(assets->body);
     free(assets->body);
     *assets = (Assets){0};

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A scene's files: hair of all sections, and the mesh.
+// A scene's files: hair of all sections, the mesh, and the light from around.
 #pragma once
 
 #include "mesh/mesh.h"
+#include "scene/environment.h"
 #include "scene/scene.h"
 #include "strands/strands_read.h"
 
@@ -12,7 +13,8 @@ typedef struct Assets {
     StrandsReport *reports; // [section_count]
     Mesh mesh;              // empty if the scene has none; of a sequence: at time 0
     bool has_mesh;
-    Body *body; // of a mesh that deforms, owned; NULL: none
+    Environment environment; // empty if the scene has none
+    Body *body;              // of a mesh that deforms, owned; NULL: none
 } Assets;
 
 // Reads everything that the scene names. A mesh that deforms moves the scene's head

@@ -156,3 +156,13 @@ void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Fra
         turn_about(scene, frame, target, lights[i].position);
     }
 }
+
+EnvironmentAxes camera_environment(const Scene *scene, int frame)
+{
+    EnvironmentAxes axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int k = 0; k < 3; ++k) {
+        glm_vec3_rotate(axes.axis[k], glm_rad(scene->run.environment_turn), (vec3){0, 1, 0});
+        if (scene->run.turn_lights) turn(scene, frame, axes.axis[k]);
+    }
+    return axes;
+}

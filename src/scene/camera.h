@@ -2,6 +2,7 @@
 // The camera and the lights of each frame.
 #pragma once
 
+#include "scene/environment.h"
 #include "scene/outline.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,10 @@ void camera_view(View *view, const Scene *scene, const Framing *framing, int fra
 // room on both sides. Found at 64 frames of the sequence. Hair that swings out of its outline may
 // leave them.
 void camera_depth_range(float range[2], const Scene *scene, const Framing *framing);
+
+// Where the environment's axes point in frame `frame`: turned by run.environment_turn and, with
+// run.turn_lights, with the eye.
+EnvironmentAxes camera_environment(const Scene *scene, int frame);
 
 // The lights of frame `frame`: the scene's, or with run.turn_lights turned with the eye.
 void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Framing *framing,

@@ -52,6 +52,8 @@ CONDITION(has_shadows, scene->run.shadow != SHADOW_NONE)
 CONDITION(guesses_shadows, scene->run.shadow == SHADOW_APPROX)
 CONDITION(has_floor, scene->run.floor != FLOOR_NONE)
 CONDITION(has_matt_floor, scene->run.floor == FLOOR_PLANE)
+CONDITION(has_environment, *scene->run.environment)
+CONDITION(has_sky, !*scene->run.environment)
 CONDITION(turns, scene->run.turntable != 0)
 CONDITION(frames_hair, scene->run.eye.automatic && scene->eye.count == 0)
 CONDITION(knows_jumps, scene->run.teleport != TELEPORT_NONE)
@@ -100,6 +102,8 @@ static const struct {
     {"follow follower_radius tip_separation clump", follows, "--followers is 0"},
     {"export_followers", exports, "there is no --export"},
     {"margin", frames_hair, "--eye is given"},
+    {"environment_strength environment_turn", has_environment, "there is no --environment"},
+    {"sky ground", has_sky, "--environment is given"},
     {"turn_lights ease_in ease_out", turns, "there is no --turntable"},
     {"shadow_size shadow_strands shadow_opacity", has_shadows, "--shadow is none"},
     {"shadow_spacing", guesses_shadows, "only --shadow approx uses it"},

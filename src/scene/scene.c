@@ -39,6 +39,10 @@ void scene_set_lights(Scene *scene)
     const LightSet *set = &LOOK_LIGHTS[scene->run.look];
     Axes axes;
     if (scene->own_lights) return;
+    if (*scene->run.environment) {
+        scene->light_count = 0;
+        return;
+    }
     scene->light_count = set->count;
     memcpy(scene->lights, set->lights, sizeof set->lights);
     if (!set->turned || !scene->run.eye.automatic || scene->eye.count) return;

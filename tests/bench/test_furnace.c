@@ -116,6 +116,41 @@ static void fur_vanishes(void **state)
     require_furnace(state, FUR, "--raster blocks");
 }
 
+// An environment of one light all around is that sky, on hair and skin, whichever way it is turned.
+static void an_even_environment_is_a_sky(void **state)
+{
+    static const float PIXELS[2][3] = {{1, 0.5f, 0.25f}, {1, 0.5f, 0.25f}};
+    const Furnace setting = {CURLS, ""};
+    char flags[4096];
+    LightStage sky, even;
+    char path[512];
+    snprintf(path, sizeof path, "%s", temporary_path(state, "furnace.json"));
+    const char *image = temporary_path(state, "even.pfm");
+    FILE *file = fopen(image, "wb");
+    assert_non_null(file);
+    fputs("PF\n2 1\n-1.0\n", file);
+    assert_int_equal(fwrite(PIXELS, sizeof PIXELS, 1, file), 1);
+    assert_int_equal(fclose(file), 0);
+    write_scene(&setting, path);
+    // sRGB of 1, 0.5 and 0.25
+    const char *small = "--size 80x60 --samples 1 --mesh assets/head.obj --color brown";
+    draw(&sky, path,
+         (const char *[]){small, "--sky 1,0.7353569,0.5370987", "--ground 1,0.7353569,0.5370987"});
+    snprintf(flags, sizeof flags, "--environment %s --environment-turn 70", image);
+    draw(&even, path, (const char *[]){small, flags, "--environment-strength 1"});
+    const float *a = (const float *)(void *)sky.image.pixels,
+                *b = (const float *)(void *)even.image.pixels;
+    double sum = 0;
+    for (size_t i = 0; i < (size_t)80 * 60 * (size_t)sky.image.channels; ++i) {
+        if (!(fabsf(a[i] - b[i]) <= 2e-3f)) // two steps of halves below 1
+            fail_msg("%zu: %g in the environment, %g in the sky", i, (double)b[i], (double)a[i]);
+        sum += fabs((double)a[i] - 1) > 0.1;
+    }
+    assert_true(sum > 1000); // of mesh and hair
+    light_stage_destroy(&sky);
+    light_stage_destroy(&even);
+}
+
 int main(void)
 {
 #define WITH_FILES(test) cmocka_unit_test_setup_teardown(test, temporary_create, temporary_destroy)
@@ -124,6 +159,7 @@ int main(void)
         WITH_FILES(curls_vanish_as_triangles),
         WITH_FILES(curls_vanish_with_tilted_scales),
         WITH_FILES(fur_vanishes),
+        WITH_FILES(an_even_environment_is_a_sky),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,7 +31,7 @@ static const Light LIGHTS[] = {{.direction = {0.48f, 0.6f, 0.64f},
                                 .color = {1, 1, 1},
                                 .intensity = 0.5f,
                                 .shadow = true}};
-static const Ambient AMBIENT = {{0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
+static const Ambient AMBIENT = {.sky = {0.8f, 0.9f, 1}, .ground = {0.3f, 0.25f, 0.2f}};
 static const float COLOR[3] = {0.8f, 0.6f, 0.5f};
 
 static Mesh head;
@@ -78,13 +78,14 @@ typedef struct Shown {
     float *depth;
 } Shown;
 
-static Shown draw_by_opengl(const RendererOptions *options, const float turn[4])
+static Shown draw_by_opengl(const RendererOptions *options, const float turn[4], StageSky sky)
 {
     View view = look();
+    const Ambient around = sky == STAGE_ENVIRONMENT ? stage_ambient(sky) : AMBIENT;
     RenderFrame frame = {.view = &view,
                          .lights = LIGHTS,
                          .light_count = sizeof LIGHTS / sizeof *LIGHTS,
-                         .ambient = &AMBIENT,
+                         .ambient = &around,
                          .head_translation = {0.01f, 0, 0.02f}};
     memcpy(frame.head_rotation, turn, sizeof frame.head_rotation);
     use(options);
@@ -243,15 +244,16 @@ static void c_shows_what_opengl_does(void **state)
         FloorKind floor;
         MeshShading shading;
         Shadow shadow;
-    } cases[] = {{1, FLOOR_NONE, MESH_SKIN, SHADOW_NONE},
-                 {1, FLOOR_PLANE, MESH_MATT, SHADOW_DOM},
-                 {1, FLOOR_SHADOW, MESH_SKIN, SHADOW_DOM},
-                 {2, FLOOR_PLANE, MESH_SKIN, SHADOW_APPROX},
-                 {4, FLOOR_NONE, MESH_MATT, SHADOW_NONE}};
+        StageSky sky;
+    } cases[] = {{1, FLOOR_NONE, MESH_SKIN, SHADOW_NONE, STAGE_ENVIRONMENT},
+                 {1, FLOOR_PLANE, MESH_MATT, SHADOW_DOM, STAGE_SKY},
+                 {1, FLOOR_SHADOW, MESH_SKIN, SHADOW_DOM, STAGE_SKY},
+                 {2, FLOOR_PLANE, MESH_SKIN, SHADOW_APPROX, STAGE_ENVIRONMENT},
+                 {4, FLOOR_NONE, MESH_MATT, SHADOW_NONE, STAGE_ENVIRONMENT}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         RendererOptions options =
             with(cases[i].samples, cases[i].floor, cases[i].shading, cases[i].shadow);
-        Shown shown = draw_by_opengl(&options, TURN);
+        Shown shown = draw_by_opengl(&options, TURN, cases[i].sky);
         LaneBaseScene scene = make_scene(TURN);
         LaneBase base = {0};
         Shade shade = {0};
@@ -272,7 +274,7 @@ static void it_stays_until_something_changes(void **state)
 {
     (void)state;
     RendererOptions options = with(1, FLOOR_PLANE, MESH_SKIN, SHADOW_NONE);
-    Shown shown = draw_by_opengl(&options, TURN);
+    Shown shown = draw_by_opengl(&options, TURN, STAGE_SKY);
     LaneBaseScene scene = make_scene(TURN);
     LaneBase base = {0};
     DrawParams draw = *scene.draw;
@@ -304,7 +306,7 @@ static void a_window_shows_its_part(void **state)
 {
     (void)state;
     RendererOptions options = with(1, FLOOR_PLANE, MESH_SKIN, SHADOW_NONE);
-    Shown shown = draw_by_opengl(&options, TURN);
+    Shown shown = draw_by_opengl(&options, TURN, STAGE_SKY);
     Drawing *drawing = &studio.renderer.drawing;
     const int place[2] = {96, 120}, size[2] = {100, 80};
     drawing_set_window(drawing, &studio.renderer.options, &studio.renderer.mesh, place, size);

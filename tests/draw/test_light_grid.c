@@ -436,10 +436,10 @@ static void sweeps_leave_out_what_nobody_sees(void **unused)
     assert_non_null(sums);
     for (int sky = 0; sky < 2; ++sky) {
         assert_true(light_grid_find_spans(state));
-        light_grid_sweep(state, &clumps.ball->scene, sky, true);
+        light_grid_sweep(state, sky, true);
         memcpy(sums, state->sum, floats * sizeof *sums);
         visit_all_cells(state);
-        light_grid_sweep(state, &clumps.ball->scene, sky, true);
+        light_grid_sweep(state, sky, true);
         size_t dark = 0;
         for (size_t i = 0; i < floats; ++i) {
             if (!(fabsf(sums[i] - state->sum[i]) <= 1e-25f))

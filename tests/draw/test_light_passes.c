@@ -40,7 +40,8 @@ typedef struct Case {
     Light lights[3];
     uint32_t light_count;
     Scatter scatter;
-    bool sky, mesh, painted, smooth, dense, thinned, sheer;
+    StageSky sky;
+    bool mesh, painted, smooth, dense, thinned, sheer;
     int cells;
     bool turns;       // sums of cells in turns
     uint32_t strands; // that stand for all; 0: all
@@ -48,13 +49,17 @@ typedef struct Case {
 
 static const Case CASES[] = {
     {.name = "sun", .lights = {SUN}, .light_count = 1, .scatter = SCATTER_GRID},
-    {.name = "sky alone", .scatter = SCATTER_NONE, .sky = true},
+    {.name = "sky alone", .scatter = SCATTER_NONE, .sky = STAGE_SKY},
     {.name = "sun, back, sky",
      .lights = {SUN, BACK},
      .light_count = 2,
      .scatter = SCATTER_GRID,
-     .sky = true,
+     .sky = STAGE_SKY,
      .cells = 16},
+    {.name = "an environment, a mesh",
+     .scatter = SCATTER_GRID,
+     .mesh = true,
+     .sky = STAGE_ENVIRONMENT},
     {.name = "lamp, spot",
      .lights = {LAMP, SPOT},
      .light_count = 2,
@@ -65,7 +70,7 @@ static const Case CASES[] = {
      .light_count = 3,
      .scatter = SCATTER_GRID,
      .mesh = true,
-     .sky = true},
+     .sky = STAGE_SKY},
     {.name = "a lamp among hair, a mesh before one half",
      .lights = {INNER},
      .light_count = 1,
@@ -87,7 +92,7 @@ static const Case CASES[] = {
      .lights = {SUN},
      .light_count = 1,
      .scatter = SCATTER_GRID,
-     .sky = true,
+     .sky = STAGE_SKY,
      .painted = true,
      .smooth = true,
      .strands = 60},

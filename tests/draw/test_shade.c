@@ -29,12 +29,13 @@ typedef struct Case {
     Lobes lobes;
     Shadow shadow;
     Painting painting;
-    bool sky;
+    StageSky sky;
 } Case;
 
 static const Case CASES[] = {
     {.name = "kajiya, sun", .lights = {SUN}, .light_count = 1},
-    {.name = "kajiya, sky", .sky = true},
+    {.name = "kajiya, sky", .sky = STAGE_SKY},
+    {.name = "kajiya, an environment", .sky = STAGE_ENVIRONMENT},
     {.name = "kajiya, lamp and spot, varied colours",
      .lights = {LAMP, SPOT},
      .light_count = 2,
@@ -54,7 +55,7 @@ static const Case CASES[] = {
      .light_count = 2,
      .shading = SHADING_MARSCHNER,
      .lobes = LOBES_GAUSS,
-     .sky = true},
+     .sky = STAGE_SKY},
     {.name = "energy, varied brightness",
      .lights = {SUN, BACK},
      .light_count = 2,
@@ -72,7 +73,7 @@ static const Case CASES[] = {
      .lobes = LOBES_GAUSS,
      .shadow = SHADOW_DOM,
      .painting = PAINTED,
-     .sky = true},
+     .sky = STAGE_SKY},
 };
 
 static void paint_strands(uint32_t item, uint32_t count)

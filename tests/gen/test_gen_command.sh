@@ -100,6 +100,10 @@ cp assets/ball.obj "$work/own.obj"
 run 2 fur "$work/own.obj" --count 20 -o "$work/own.obj"; one_line; says "the mesh"
 equal "$work/own.obj" assets/ball.obj
 
+claim "the light of a studio is the bundled one, and a file of its own"
+run 0 --environment "$work/studio.pfm"; says "64 x 32 px"
+equal "$work/studio.pfm" assets/studio.pfm
+run 2 --mesh "$work/two" --environment "$work/two"; one_line; says "--environment"; none "$work/two"
 claim "the head in motion is the bundled one, and a file of its own"
 run 0 --motion "$work/nod.npz"; says "3002 vertices, 8 s at 12 samples a second"
 equal "$work/nod.npz" assets/nod.npz

@@ -352,11 +352,29 @@ static void the_content_of_a_map_counts(void **state)
     destroy(&world);
 }
 
+static void the_content_of_an_environment_counts(void **state)
+{
+    (void)state;
+    static EnvironmentPart parts[ENVIRONMENT_PARTS];
+    World world;
+    create(&world, "split");
+    Numbers none = numbers_of(&world);
+    world.assets.environment.parts = parts;
+    Numbers dark = numbers_of(&world);
+    parts[ENVIRONMENT_PARTS - 1].light[2] = 1;
+    Numbers lit = numbers_of(&world);
+    world.assets.environment.parts = NULL;
+    assert_string_not_equal(none.image, dark.image);
+    assert_string_not_equal(dark.image, lit.image);
+    destroy(&world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_parameter_counts_or_is_exempt_for_a_reason),
         cmocka_unit_test(what_is_exempt_is_a_parameter_and_has_a_reason),
+        cmocka_unit_test(the_content_of_an_environment_counts),
         cmocka_unit_test(every_input_counts),
         cmocka_unit_test(what_a_frame_shows_counts),
         cmocka_unit_test_setup_teardown(the_content_of_a_map_counts, temporary_create,

@@ -133,15 +133,47 @@ uint64_t stage_base_version(void)
                                                   : stage_passes()->base.version;
 }
 
-void stage_draw_lit(const Light *lights, uint32_t count, bool has_sky)
+// Light of some colour from every side, and a bright spot.
+static const Environment *find_environment(void)
 {
-    const Ambient sky = {{0.5f, 0.6f, 0.9f}, {0.2f, 0.1f, 0.1f}}, none = {{0}, {0}};
+    enum { HEIGHT = 8, WIDTH = 2 * HEIGHT };
+    static EnvironmentPart parts[ENVIRONMENT_PARTS];
+    float pixels[HEIGHT][WIDTH][3];
+    static const Environment kept = {parts};
+    Environment made = {0};
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x)
+            for (int c = 0; c < 3; ++c)
+                pixels[y][x][c] =
+                    0.1f * (float)((3 * x + 5 * y + 7 * c) % 8) + (x == 5 && y == 2 ? 8 : 0);
+    const Image image = {WIDTH, HEIGHT, 3, (uint8_t *)pixels, IMAGE_FLOAT};
+    NEEDED(environment_create(&made, &image, error));
+    memcpy(parts, made.parts, sizeof parts);
+    environment_destroy(&made);
+    return &kept;
+}
+
+Ambient stage_ambient(StageSky sky)
+{
+    Ambient ambient = {0};
+    if (sky == STAGE_SKY)
+        ambient = (Ambient){.sky = {0.5f, 0.6f, 0.9f}, .ground = {0.2f, 0.1f, 0.1f}};
+    if (sky == STAGE_ENVIRONMENT)
+        ambient = (Ambient){.environment = find_environment(),
+                            .axes = {{{0.8f, 0, -0.6f}, {0, 1, 0}, {0.6f, 0, 0.8f}}},
+                            .strength = 0.7f};
+    return ambient;
+}
+
+void stage_draw_lit(const Light *lights, uint32_t count, StageSky sky)
+{
+    const Ambient ambient = stage_ambient(sky);
     View view;
     studio_view(&view, SIDE, SIDE);
     const RenderFrame frame = {.view = &view,
                                .lights = lights,
                                .light_count = count,
-                               .ambient = has_sky ? &sky : &none,
+                               .ambient = &ambient,
                                .head_rotation = {0, 0, 0, 1}};
     NEEDED(
         renderer_draw(&studio.renderer, &frame, studio.items, studio.count, &studio.image, error));

@@ -63,8 +63,12 @@ void stage_lanes_show(uint32_t item, const float x[3][STRAND_TILE],
 // Blocks are to draw what mesh and floor hide, too.
 void stage_lanes_draw_hidden(bool on);
 
-// Draws by these lights, below a blue sky or in the dark, as studio_view shows it.
-void stage_draw_lit(const Light *lights, uint32_t count, bool has_sky);
+// What lies around: nothing, a blue sky, or an environment that differs in all directions.
+typedef enum StageSky { STAGE_DARK, STAGE_SKY, STAGE_ENVIRONMENT } StageSky;
+Ambient stage_ambient(StageSky sky);
+
+// Draws by these lights in such light, as studio_view shows it.
+void stage_draw_lit(const Light *lights, uint32_t count, StageSky sky);
 
 // Draws; a copy of the bytes, which the caller frees. Draws, and the bytes must be those.
 uint8_t *draw_copy(size_t *size);
