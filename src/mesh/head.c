@@ -7,7 +7,7 @@
 #include <pthread.h>
 #include <stddef.h>
 
-// --- Parts. Each joins what the parts before it have made.
+// --- Parts, in the order in which they are joined to the result so far.
 
 typedef enum PartKind {
     ADD,  // smooth union
@@ -16,8 +16,8 @@ typedef enum PartKind {
 } PartKind;
 
 typedef enum PartForm {
-    EGG,  // an ellipsoid: a is the middle, b has the radii
-    CONE, // a round cone, the hull of two spheres: a and b are middles with radii
+    EGG,  // an ellipsoid: a is the centre, b has the radii
+    CONE, // a round cone, the hull of two spheres: a and b are centres with radii
 } PartForm;
 
 typedef enum PartSides {
@@ -29,13 +29,12 @@ typedef struct Part {
     PartKind kind;
     PartForm form;
     PartSides sides;
-    double blend; // m: width of the seam's rounding
+    double blend; // m, width over which the seam is rounded
     double a[4], b[4];
 } Part;
 
-// The face is a head of 0.23 m by thirds: hairline 0.078, brow 0.012, base of the nose -0.054, chin
-// -0.12; eyes at half the height.
-// clang-format off
+// The proportions of a head of 0.23 m whose face is divided into thirds: hairline at 0.078, brow
+// 0.012, base of the nose -0.054, chin -0.12. The eyes are at half the height.
 static const Part PARTS[] = {
     // Skull.
     {ADD, EGG, ONE, 0.030, {0, 0.030, -0.025}, {0.078, 0.080, 0.082}},
@@ -85,7 +84,7 @@ static const Part PARTS[] = {
 };
 // clang-format on
 
-// Quilez's bound, exact in sign: (|p/r| - 1) |p/r| / |p/r^2|.
+// Quilez's bound of an ellipsoid's distance, with exact sign: (|p/r| - 1) |p/r| / |p/r^2|.
 static double egg_distance(const Part *part, const Double3 at)
 {
     Double3 p, q;
@@ -97,8 +96,9 @@ static double egg_distance(const Part *part, const Double3 at)
     return l > 0.0 ? k * (k - 1.0) / l : -fmin(part->b[0], fmin(part->b[1], part->b[2]));
 }
 
-// What all points share: of a round cone its axis and sides, of any part the box around it (and its
-// mirror image, in |x|), and the least ratio of its bound to the distance from that box.
+// Data of a part that do not depend on the point: the axis and sides of a round cone; the bounding
+// box of the part with its mirror image, in |x|; and the smallest ratio of the part's distance
+// bound to the distance from that box.
 typedef struct Shape {
     Double3 axis;
     double length, slant, straight;
@@ -109,10 +109,10 @@ typedef struct Shape {
 enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
 _Static_assert((int)PART_COUNT <= (int)HEAD_PARTS_MOST, "a patch has room for all parts");
 
-// Neighbours in the table that are passed over together.
+// Neighbours in the table, which are skipped together.
 typedef struct Group {
     Double3 low, high;
-    double ratio, blend; // the least, the largest
+    double ratio, blend; // the smallest ratio, the largest blend
 } Group;
 
 enum { GROUP_PARTS = 4, GROUPS = (PART_COUNT + GROUP_PARTS - 1) / GROUP_PARTS };
@@ -120,7 +120,8 @@ enum { GROUP_PARTS = 4, GROUPS = (PART_COUNT + GROUP_PARTS - 1) / GROUP_PARTS };
 static Shape shapes[PART_COUNT];
 static Group groups[GROUPS];
 
-// In the plane of axis and point: beside the slanting side, or beyond one of the spheres' circles.
+// Works in the plane of the axis and the point. The nearest point is on the slanted side or on one
+// of the spheres.
 static double cone_distance(const Part *part, const Shape *shape, const Double3 at)
 {
     Double3 p, across;
@@ -135,7 +136,8 @@ static double cone_distance(const Part *part, const Shape *shape, const Double3 
     return flat * shape->straight + along * shape->slant - part->a[3];
 }
 
-// A minimum that rounds the seam over `blend`, with two derivatives; symmetric, to the bit.
+// A minimum that rounds the seam over the width `blend`. Twice differentiable, and exactly
+// symmetric in a and b.
 static double smooth_min(double a, double b, double blend)
 {
     double least = a < b ? a : b, near = blend - fabs(a - b), h = near / blend;
@@ -152,7 +154,8 @@ static double lesser(double a, double b)
     return a < b ? a : b;
 }
 
-// Whether a bound of at least `ratio` times the way to the box is more than `distance`, >= 0.
+// Whether a distance bound of at least `ratio` times the distance to the box exceeds `distance` (>=
+// 0).
 static bool is_far(const Double3 low, const Double3 high, double ratio, const Double3 at,
                    double distance)
 {
@@ -166,7 +169,8 @@ static double form_distance(const Part *part, const Shape *shape, const Double3 
     return part->form == EGG ? egg_distance(part, at) : cone_distance(part, shape, at);
 }
 
-// `at` is on the part's side, x >= 0. The mirror image counts where it is near enough to blend.
+// `at` must be on the part's side, x >= 0. The mirror image is evaluated only where it is near
+// enough to blend.
 static double part_distance(const Part *part, const Shape *shape, const Double3 at)
 {
     const Double3 mirrored = {-at[0], at[1], at[2]};
@@ -177,7 +181,8 @@ static double part_distance(const Part *part, const Shape *shape, const Double3 
     return smooth_min(distance, form_distance(part, shape, mirrored), part->blend);
 }
 
-// An ellipsoid's bound is at least the distance times its shortest radius over its longest.
+// The bound of an ellipsoid's distance is at least the distance times the shortest over the longest
+// radius.
 static void find_shape(const Part *part, Shape *shape)
 {
     const double *a = part->a, *b = part->b;
@@ -212,13 +217,13 @@ static void find_shapes(void)
             group->low[k] = lesser(group->low[k], shape->low[k]);
             group->high[k] = greater(group->high[k], shape->high[k]);
         }
-        // What is kept is everywhere.
+        // a KEEP part affects every point
         group->ratio = PARTS[i].kind == KEEP ? 0.0 : lesser(group->ratio, shape->ratio);
         group->blend = greater(group->blend, PARTS[i].blend);
     }
 }
 
-// The head with part `i`, of the head without it; on the side where x >= 0.
+// The distance of the head including part `i`, from that without it (`sum`), for x >= 0.
 static double join_part(double sum, int i, const Double3 at)
 {
     const Part *part = &PARTS[i];
@@ -228,8 +233,9 @@ static double join_part(double sum, int i, const Double3 at)
     return sign * smooth_min(sign * sum, distance, part->blend);
 }
 
-// Parts that are too far away to change the sum are passed over. Within `reach`, the way to a box
-// changes by as much, and a sum by a few times as much: its gradient stays below 8.
+// Skips parts that are too far away to change the result anywhere within `reach` of the point. Over
+// that range the distance to a box changes by at most `reach`, and `sum` by at most 8 times as
+// much, which bounds its gradient.
 double head_patch_find(HeadPatch *patch, const Double3 point, double reach)
 {
     const Double3 at = {fabs(point[0]), point[1], point[2]};
@@ -293,7 +299,7 @@ void head_normal(const Double3 at, Double3 normal)
 
 // --- The mesh.
 
-// Edge length of the first, fine mesh along an axis: linear between the knots.
+// Edge length of the initial fine mesh along an axis, linear between the knots.
 typedef struct Spacing {
     double place, edge; // m
 } Spacing;
@@ -313,10 +319,10 @@ static double edge_at(const Spacing *spacing, size_t count, double at)
     return s[0].edge + share * (s[1].edge - s[0].edge);
 }
 
-enum { LINES = 256 }; // room for; the tables above need fewer
+enum { LINES = 256 }; // room for the lines; the tables above need fewer
 
-// From the first knot to the last; `mirrored`: with their mirror images. Returns the number of
-// planes.
+// Places planes from the first knot to the last. `mirrored` adds their mirror images. Returns the
+// number of planes.
 static uint32_t place_lines(const Spacing *spacing, size_t count, bool mirrored, double line[LINES])
 {
     uint32_t found = 0;
@@ -330,14 +336,15 @@ static uint32_t place_lines(const Spacing *spacing, size_t count, bool mirrored,
     return 2 * found - 1;
 }
 
-// Files stay small: a hundredth of a millimetre, a ten thousandth of a turn.
+// Rounds to 0.01 mm or 1/10000 of a turn, which keeps text files small.
 static void round_numbers(float *number, size_t count, double unit)
 {
     for (size_t i = 0; i < count; i++)
         number[i] = (float)(floor((double)number[i] / unit + 0.5) * unit);
 }
 
-// Longitude and latitude of a vertex, `turns` times around.
+// Sets u from the longitude and v from the latitude of a vertex. `turns` is added to u for the
+// seam.
 static void set_uv(const Mesh *mesh, uint32_t vertex, int turns, float uv[2])
 {
     Double3 p;
@@ -347,7 +354,8 @@ static void set_uv(const Mesh *mesh, uint32_t vertex, int turns, float uv[2])
     uv[1] = (float)(0.5 + asin(p[1]) / M_PI);
 }
 
-// Whether the corner lies beyond the seam at the back, seen from others of its triangle.
+// Whether the corner is on the other side of the seam (at the back of the head) than the rest of
+// its triangle.
 static bool is_beyond(const Mesh *mesh, const uint32_t triangle[3], int k)
 {
     float most = 0.0f;
@@ -355,7 +363,7 @@ static bool is_beyond(const Mesh *mesh, const uint32_t triangle[3], int k)
     return most - mesh->uv[triangle[k]][0] > 0.5f;
 }
 
-// Corners beyond the seam have coordinates of their own, with u beyond 1.
+// Corners on the other side of the seam get coordinates of their own, with u greater than 1.
 static Result add_uv(Mesh *mesh, Error *error)
 {
     uint32_t count = mesh->vertex_count;
@@ -374,8 +382,8 @@ static Result add_uv(Mesh *mesh, Error *error)
     return RESULT_OK;
 }
 
-// Eyes go to the face, its eyes and mouth first, then to the ears; shoulders are plain and the
-// skull is under hair.
+// Importance for simplification: viewers look at the face, most at eyes and mouth, then at the
+// ears. Shoulders are plain, and hair covers the skull.
 static double look_at(const Double3 at)
 {
     bool ahead = at[2] > 0.03 && at[1]<0.03, near = at[2]> 0.058 && at[1] > -0.095;

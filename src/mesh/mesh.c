@@ -52,7 +52,8 @@ void mesh_bounds(const Mesh *mesh, float low[3], float high[3])
     }
 }
 
-// The cross product of two edges is as long as twice the triangle's area.
+// The cross product of two edges has twice the area of the triangle as its length, so the sum is
+// weighted by area.
 void mesh_compute_normals(Mesh *mesh)
 {
     memset(mesh->normal, 0, mesh->vertex_count * sizeof *mesh->normal);
@@ -78,5 +79,3 @@ void mesh_compute_normals(Mesh *mesh)
         for (int i = 0; i < 3; i++) n[i] = usable ? (float)(n[i] / length) : i == 1;
     }
 }
-
-// --- Cones.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Meshes over time in Alembic's Ogawa files: all polygon meshes and subdivision surfaces that are
-// shown (AbcGeom's IPolyMesh, ISubD), as one mesh, with the transforms above them. Polygons become
-// fans of triangles; Alembic numbers corners clockwise, meshes here do not.
+// Animated meshes in Alembic's Ogawa files: joins all visible polygon meshes and subdivision
+// surfaces (AbcGeom's IPolyMesh, ISubD) with the transforms above them into one mesh. Polygons
+// become triangle fans. Alembic lists corners clockwise; meshes here are counter-clockwise.
 #include "base/alembic.h"
 #include "mesh/mesh_sequence.h"
 
@@ -9,18 +9,18 @@
 #include <string.h>
 
 typedef struct AbcMesh {
-    OgawaProperties own;           // of its ".geom"
-    const OgawaProperty *position; // one of them
+    OgawaProperties own;           // properties of ".geom"
+    const OgawaProperty *position; // its positions, which are one of the properties
     int object;
-    uint64_t first, count; // its vertices among all
-    double *still;         // positions that do not change
+    uint64_t first, count; // range of its vertices in the joined mesh
+    double *still;         // positions if they do not change
 } AbcMesh;
 
 typedef struct AbcMeshes {
     Alembic alembic;
     AbcMesh *mesh; // [count]
     uint32_t count;
-    uint32_t sampling, samples; // of what has most of them
+    uint32_t sampling, samples; // those of the mesh with the most samples
 } AbcMeshes;
 
 static bool match(const char *path, const Bytes *bytes)
@@ -85,7 +85,7 @@ static void open_all(AbcMeshes *all, MeshSamples *samples)
 
 // --- Faces.
 
-// All numbers of a property that never changes.
+// All values of a property that must not change over time.
 static double *read_fixed(AbcMeshes *all, const AbcMesh *mesh, const char *name, size_t *count)
 {
     Ogawa *file = &all->alembic.file;

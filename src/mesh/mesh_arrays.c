@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Meshes over time as arrays of numpy: .npz with `positions` (F, V, 3), `faces` (T, 3) or (T, 4)
-// and the scalars `fps`, `unit` (metres) and `up` ('y' or 'z'); .npy with the positions alone.
-// Positions may be whole numbers, so that a small file holds them with a small `unit`.
+// Animated meshes as NumPy arrays: .npz with `positions` (F, V, 3), `faces` (T, 3) or (T, 4) and
+// the scalars `fps`, `unit` (metres) and `up` ('y' or 'z'); .npy with only the positions. Positions
+// may be integers, so that a small `unit` makes a small file.
 #include "base/npy_array.h"
 #include "base/zip.h"
 #include "mesh/mesh_sequence.h"
@@ -32,7 +32,7 @@ static void take_positions(MeshSamples *samples, Reader *reader, const NpyArray 
                     text);
         return;
     }
-    if (samples->position) return; // the archive names them twice
+    if (samples->position) return; // the archive has two arrays of this name
     samples->count = shape[0];
     samples->vertex_count = shape[1];
     if (mesh_samples_create(samples, reader)) npy_array_copy(array, samples->position[0]);
@@ -60,7 +60,7 @@ static void take_faces(MeshSamples *samples, Reader *reader, const NpyArray *arr
         for (uint64_t c = 2; c < corners; ++c, ++t) {
             const uint64_t of[3] = {0, c - 1, c};
             for (int i = 0; i < 3; ++i) {
-                // Elements are numbered in the order of the content.
+                // In Fortran order the elements of a row are `faces` apart.
                 uint64_t at = array->fortran ? of[i] * faces + f : f * corners + of[i];
                 double corner = npy_array_number(array, at);
                 if (!(corner >= 0 && corner < 4294967295.0))

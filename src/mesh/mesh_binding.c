@@ -11,7 +11,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// v turned by a unit quaternion: v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector.
+// Rotates v by a unit quaternion with vector part u and scalar w: v + 2 w (u x v) + 2 u x (u x v).
 static void turn_vector(const double q[4], const double v[3], double turned[3])
 {
     Double3 once, twice;
@@ -79,7 +79,7 @@ RigidMotion mesh_binding_motion(const MeshBinding *binding, uint32_t i, const fl
             place[k] += point->weight[c] * (double)position[point->corner[c]][k];
     }
     for (int k = 0; k < 4; ++k) norm += motion.rotation[k] * motion.rotation[k];
-    // Turns that cancel each other out: the corner's that counts most.
+    // If the corners' rotations cancel, use that of the corner with the largest weight.
     bool cancel = !(norm > 1e-6);
     for (int k = 0; k < 4; ++k)
         motion.rotation[k] = cancel ? first[k] : motion.rotation[k] / sqrt(norm);
@@ -120,9 +120,9 @@ RigidMotion rigid_motion_inverse(const RigidMotion *motion)
     return inverse;
 }
 
-// --- The best fit.
+// --- The best rigid motion between two sets of points.
 
-// The eigenvector of the largest eigenvalue of a symmetric matrix, by Jacobi's rotations.
+// The eigenvector of the largest eigenvalue of a symmetric matrix, by Jacobi rotations.
 static void largest_eigenvector(double m[4][4], double vector[4])
 {
     double v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
@@ -178,14 +178,14 @@ RigidMotion rigid_motion_fit(const double (*from)[3], const double (*to)[3], uin
             for (int k = 0; k < 3; ++k) s[j][k] += a[j] * b[k];
         scale += double3_length(a) * double3_length(b);
     }
-    // Horn's matrix for quaternions x y z w.
+    // Horn's matrix for quaternions in the order x y z w.
     double m[4][4], trace = s[0][0] + s[1][1] + s[2][2];
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) m[i][j] = s[i][j] + s[j][i] - (i == j ? trace : 0);
         m[i][3] = m[3][i] = s[(i + 1) % 3][(i + 2) % 3] - s[(i + 2) % 3][(i + 1) % 3];
     }
     m[3][3] = trace;
-    // So little, 1e-12 of what the points say, decides only what they do not.
+    // A weight of 1e-12 for the previous rotation decides only what the points leave undetermined.
     double little = scale > 0 ? 1e-12 * scale : 1;
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) m[i][j] += little * near->rotation[i] * near->rotation[j];

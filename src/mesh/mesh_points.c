@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Caches of points that modelling programs write beside a mesh: PC2 (3ds Max's point cache, as
-// Blender writes it) and MDD (LightWave's). Neither has faces. PC2 is little-endian: "POINTCACHE2",
-// a zero, version, vertices, first frame, frames a sample, samples, positions. MDD is big-endian:
-// samples, vertices, the samples' times, positions.
+// Point caches, which modelling programs write beside a mesh: PC2 (the point cache of 3ds Max, also
+// written by Blender) and MDD (LightWave). Neither contains faces. PC2 is little-endian:
+// "POINTCACHE2", a zero byte, version, number of vertices, first frame, frames per sample, number
+// of samples, positions. MDD is big-endian: number of samples, number of vertices, the samples'
+// times, positions.
 #include "mesh/mesh_sequence.h"
 
 #include <math.h>
@@ -36,7 +37,7 @@ static void read_pc2(MeshSamples *samples, Reader *reader)
                            3 * samples->count * samples->vertex_count);
 }
 
-// It has no magic word: the file's name says it, and its size must be right.
+// MDD has no signature, so the file must have the right suffix and size.
 static bool match_mdd(const char *path, const Bytes *bytes)
 {
     size_t length = strlen(path);

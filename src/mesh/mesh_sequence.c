@@ -17,7 +17,7 @@ static const MeshSequenceFormat *const FORMATS[] = {&MESH_SEQUENCE_NPZ,     &MES
                                                     &MESH_SEQUENCE_ALEMBIC, &MESH_SEQUENCE_USD};
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof *FORMATS };
 
-// Vertices of all samples together, 96 GB.
+// The most vertices of all samples together (96 GB).
 static const uint64_t MOST_VERTICES = UINT64_C(1) << 33;
 
 bool mesh_samples_create(MeshSamples *samples, Reader *reader)
@@ -53,7 +53,7 @@ static const MeshSequenceFormat *find_format(const char *path, const Bytes *byte
     return NULL;
 }
 
-// Only a regular file is looked into: what is read from a pipe would be lost.
+// Looks only into regular files, because bytes that are read from a pipe would be lost.
 bool mesh_sequence_matches(const char *path)
 {
     uint8_t first[16];
@@ -74,7 +74,7 @@ void mesh_sequence_destroy(MeshSequence *sequence)
     *sequence = (MeshSequence){0};
 }
 
-// --- Numbered OBJ files.
+// --- Sequences of numbered OBJ files.
 
 static Result check_gaps(const Target *target, TargetNumbers numbers, Error *error)
 {
@@ -165,7 +165,7 @@ static Result read_pattern(MeshSequence *sequence, Mesh *mesh, const char *path,
     return result;
 }
 
-// --- Files of all samples.
+// --- Files that contain all samples.
 
 static Result check_finite(const MeshSamples *samples, const char *path, Error *error)
 {
@@ -188,7 +188,8 @@ static void convert(MeshSamples *samples, float unit, bool up_z)
     }
 }
 
-// Faces, from the file or else from the rest pose, and the first sample's positions.
+// Makes the mesh from the first sample's positions and the faces of the file or, if it has none, of
+// the rest pose.
 static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, const char *path,
                         Error *error)
 {
@@ -261,7 +262,7 @@ static Result read_file(MeshSequence *sequence, Mesh *mesh, const Mesh *rest, co
     return result;
 }
 
-// --- Both.
+// --- Both kinds.
 
 static Result read_rest(Mesh *rest, const MeshSequenceOptions *options, Error *error)
 {
@@ -316,7 +317,7 @@ void mesh_sequence_evaluate(const MeshSequence *sequence, double time, float (*p
 {
     SampleSpan span = sample_span(&sequence->times, time);
     const size_t vertices = sequence->vertex_count;
-    if (span.weight[1] == 1) { // to the bit
+    if (span.weight[1] == 1) { // exactly the sample, without rounding
         memcpy(position, mesh_sequence_at(sequence, span.at[1]), vertices * sizeof *position);
         return;
     }
@@ -324,7 +325,8 @@ void mesh_sequence_evaluate(const MeshSequence *sequence, double time, float (*p
     const float *sample[4], w[4] = {(float)span.weight[0], (float)span.weight[1],
                                     (float)span.weight[2], (float)span.weight[3]};
     for (int i = 0; i < 4; ++i) sample[i] = mesh_sequence_at(sequence, span.at[i])[0];
-    // Differences from the nearest sample keep rounding at that of the positions themselves.
+    // Interpolating differences from the nearest sample keeps the rounding error at that of the
+    // positions.
     for (size_t v = 0; v < 3 * vertices; ++v) {
         float p = sample[1][v];
         to[v] =

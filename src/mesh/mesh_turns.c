@@ -16,13 +16,13 @@ void mesh_turns_destroy(MeshTurns *turns)
     *turns = (MeshTurns){0};
 }
 
-// --- Vertices at one place, as files have them along seams of texture coordinates.
+// --- Vertices at the same position, which files have along seams of texture coordinates.
 
 static uint32_t hash_position(const float p[3])
 {
     uint32_t hash = 2166136261u;
     for (int k = 0; k < 3; ++k) {
-        float number = p[k] + 0.0f; // -0 is 0
+        float number = p[k] + 0.0f; // turns -0 into 0
         uint32_t bits;
         memcpy(&bits, &number, sizeof bits);
         hash = (hash ^ bits) * 16777619u;
@@ -55,8 +55,9 @@ static bool find_twins(uint32_t *twin, const Mesh *mesh)
 
 // --- Rings.
 
-// Counts, then fills: of each triangle's corner the two others. A neighbour within two triangles
-// comes twice, so an edge of the mesh's border counts half.
+// Counts, then stores: each corner of a triangle has the two other corners as neighbours. A
+// neighbour that shares two triangles is stored twice, so an edge at the mesh's border gets half
+// the weight.
 static bool find_rings(MeshTurns *turns, const Mesh *mesh)
 {
     uint32_t *count = turns->first;
@@ -77,12 +78,13 @@ static bool find_rings(MeshTurns *turns, const Mesh *mesh)
         turns->share = calloc((size_t)count[mesh->vertex_count] + 1, sizeof *turns->share);
         if (!turns->neighbour || !turns->share) return false;
     }
-    memmove(&count[1], count, mesh->vertex_count * sizeof *count); // filling has moved them on
+    // Storing has advanced each start to the next vertex's.
+    memmove(&count[1], count, mesh->vertex_count * sizeof *count);
     count[0] = 0;
     return true;
 }
 
-// The two tangents as the ring's offsets make them.
+// The two tangent vectors, as weighted sums of the ring's offsets.
 static void find_tangents(const MeshTurns *turns, uint32_t v, const float (*position)[3],
                           Double3 tangent[2])
 {
@@ -97,7 +99,8 @@ static void find_tangents(const MeshTurns *turns, uint32_t v, const float (*posi
     }
 }
 
-// The rotation part of the map from the plane to both tangents: its columns, and the normal.
+// The rotation part of the linear map from the tangent plane to the two tangents: its columns and
+// the normal.
 static bool find_frame(const Double3 tangent[2], Double3 frame[3])
 {
     Double3 along, across;
@@ -105,11 +108,11 @@ static bool find_frame(const Double3 tangent[2], Double3 frame[3])
     double area = double3_normalize(frame[2]);
     double3_copy(tangent[0], along);
     double length = double3_normalize(along);
-    // Collapsed to a line or a point but for rounding.
+    // The ring has collapsed to a line or a point.
     if (!(area > 1e-6 * double3_length(tangent[1]) * length) || !(length > 0)) return false;
     double3_cross(frame[2], along, across);
-    // In the basis (along, across) the map is [[length, b], [0, d]]: it turns by the angle whose
-    // tangent is (0 - b)/(length + d).
+    // In the basis (along, across) the map is the matrix [[length, b], [0, d]]. Its rotation part
+    // turns by the angle with tangent (0 - b)/(length + d).
     double b = double3_dot(tangent[1], along), d = double3_dot(tangent[1], across);
     double cosine = length + d, sine = -b, norm = sqrt(cosine * cosine + sine * sine);
     for (int k = 0; k < 3; ++k) {
@@ -128,9 +131,9 @@ static void find_basis(const Double3 normal, Double3 x, Double3 y)
     double3_cross(normal, x, y);
 }
 
-// The shares of the ring's offsets: with their coordinates (x, y) in the tangent plane, (x, y) by
-// the inverse of sum (x, y)(x, y)^T. The map of the plane that fits the offsets best by least
-// squares has sum share * offset as its columns.
+// The weights of the ring's offsets. With (x, y) as an offset's coordinates in the tangent plane,
+// its weight is the inverse of sum (x, y)(x, y)^T times (x, y). Then the columns sum weight *
+// offset are the least-squares map from the plane to the offsets.
 static void make_shares(MeshTurns *turns, const Mesh *mesh, uint32_t v)
 {
     Double3 normal, x, y;
@@ -160,7 +163,7 @@ static void make_shares(MeshTurns *turns, const Mesh *mesh, uint32_t v)
         memset(turns->frame[v], 0, sizeof turns->frame[v]);
 }
 
-// Normals of places, not of vertices: seams have one.
+// Normals are computed on the welded mesh, so that both sides of a seam have the same normal.
 static bool smooth_normals(Mesh *welded, const MeshTurns *turns, const Mesh *mesh)
 {
     *welded = *mesh;
@@ -193,7 +196,8 @@ static bool build(MeshTurns *turns, const Mesh *rest)
 Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, Error *error)
 {
     *turns = (MeshTurns){0};
-    // Of six neighbours a triangle, and a table of twice the vertices.
+    // The limits of 32-bit counts: six neighbours per triangle, and a hash table of twice the
+    // number of vertices.
     if (rest->triangle_count > UINT32_MAX / 8 || rest->vertex_count > UINT32_MAX / 4)
         return error_set(error, RESULT_BAD_INPUT,
                          "the mesh: %u vertices and %u triangles are too many", rest->vertex_count,
@@ -204,7 +208,8 @@ Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, Error *error)
                      rest->vertex_count);
 }
 
-// The quaternion of now rest^T, whose columns are the frames' vectors (after Shepperd 1978).
+// The quaternion of the rotation now * rest^T, where the frames' vectors are the columns (after
+// Shepperd 1978).
 static void quaternion_between(const Double3 rest[3], const Double3 now[3], double q[4])
 {
     double m[3][3] = {{0}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Meshes over time in `.usda` files: all Mesh prims that are shown, as one mesh, with the
-// transforms above them. Polygons become fans of triangles.
+// Animated meshes in `.usda` files: joins all visible Mesh prims with the transforms above them
+// into one mesh. Polygons become triangle fans.
 #include "base/usd_stage.h"
 #include "mesh/mesh_sequence.h"
 
@@ -8,21 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Face corners are read as float32, which has all whole numbers up to here.
+// Face corners are read as float32, which represents all integers up to this one.
 static const uint64_t MOST_WHOLE = 1 << 24;
 
 typedef struct UsdMesh {
     int prim;
     UsdSamples points, counts, corners;
-    bool left_handed; // its corners go round clockwise
-    bool skinned;     // by a skeleton: what points are without it nobody wants
-    uint64_t first;   // of its vertices among all
+    bool left_handed; // corners are listed clockwise
+    bool skinned;     // deformed by a skeleton, which is not supported
+    uint64_t first;   // first vertex in the joined mesh
 } UsdMesh;
 
 typedef struct UsdMeshes {
     Reader *reader;
     UsdStage stage;
-    UsdMesh *mesh; // [count] with points
+    UsdMesh *mesh; // [count] only meshes with points
     uint32_t count, left_out, curves;
 } UsdMeshes;
 
@@ -84,7 +84,7 @@ static void add_mesh(UsdMeshes *all, UsdMesh *mesh)
 {
     Reader *reader = all->reader;
     if (!reader_ok(reader) || mesh->points.count == 0 || mesh->points.sample[0].count == 0)
-        return; // an `over`, or empty
+        return; // an `over`, or an empty mesh
     if (usd_stage_hides(&all->stage, mesh->prim)) {
         ++all->left_out;
         return;
@@ -115,7 +115,7 @@ static const UsdSchema MESHES = {begin_mesh, read_attribute, NULL, end_mesh};
 
 // --- Faces.
 
-// The values, which are the same in all samples.
+// The values, which must be the same in all samples.
 static const UsdValues *find_fixed(Reader *reader, const UsdSamples *samples, const char *name,
                                    uint32_t line)
 {

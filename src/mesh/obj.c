@@ -16,7 +16,7 @@ bool obj_matches(const Bytes *bytes)
 {
     static const char *const others[] = {"vp", "o", "g", "s", "mtllib", "usemtl"};
     const char *text = (const char *)bytes->data;
-    // A count of 35 or 118 in four bytes begins like a comment or a vertex.
+    // A binary file may begin with a count of 35 or 118 in four bytes, which look like '#' or 'v'.
     if (strnlen(text, 4) < 4 && bytes->size >= 4) return false;
     text += strspn(text, " \t\r\n");
     if (*text == '#') return strncmp(text, "#usda", 5) != 0;
@@ -42,7 +42,7 @@ bool obj_goes_on(Reader *reader)
     return !reader_line_ended(reader) && reader->data[reader->at] != '#';
 }
 
-// A whole number other than 0 at *text, which is moved behind it; 0 if there is none.
+// Reads a non-zero integer at *text and moves *text behind it; 0 if there is none.
 static int64_t scan_index(const char **text)
 {
     char *end;
@@ -86,8 +86,8 @@ void obj_put_line(FILE *stream, const char *word, const float *numbers, int coun
 
 // --- Reading a mesh.
 
-// What a corner names: kinds are OBJ_VERTEX, OBJ_UV and OBJ_NORMAL. Vectors have `size`
-// coordinates; those behind the first `needed` are 0 where the line ends before them.
+// What a corner refers to: OBJ_VERTEX, OBJ_UV or OBJ_NORMAL. Vectors have `size` coordinates, of
+// which the first `needed` are required; missing ones are 0.
 static const struct {
     const char *name, *expected;
     int size, needed;
@@ -104,16 +104,16 @@ typedef struct Pile {
     size_t count, capacity;
 } Pile;
 
-// The file's content while it is read.
+// The content of the file.
 typedef struct Obj {
     Reader reader;
     Pile vectors[KIND_COUNT];        // float[size]
-    Pile triangles[KIND_COUNT];      // uint32_t[3], of the corners: from 1, 0: none
-    uint32_t largest[KIND_COUNT];    // index (from 1) that a face used
-    uint32_t largest_at[KIND_COUNT]; // and its line
+    Pile triangles[KIND_COUNT];      // uint32_t[3], indices of the corners from 1; 0 if absent
+    uint32_t largest[KIND_COUNT];    // largest index (from 1) that a face has used
+    uint32_t largest_at[KIND_COUNT]; // the line of that face
 } Obj;
 
-// Room for one more record of `size` bytes; NULL after failing.
+// Adds room for one record of `size` bytes; NULL after an error.
 static void *pile_add(Reader *reader, Pile *pile, size_t size)
 {
     if (!reader_ok(reader)) return NULL;
@@ -134,7 +134,7 @@ static void *pile_add(Reader *reader, Pile *pile, size_t size)
     return (char *)pile->data + size * pile->count++;
 }
 
-// What follows the vector, w or colours that some programs put there, is left.
+// Ignores what follows the vector; some programs add w or colours.
 static void read_vector(Obj *obj, ObjStatement kind)
 {
     Reader *reader = &obj->reader;
@@ -152,8 +152,9 @@ static void read_vector(Obj *obj, ObjStatement kind)
     if (record) memcpy(record, vector, (size_t)size * sizeof *vector);
 }
 
-// The index from 1 that `index` of the file means, 0 for a mistake and for none. An index beyond
-// what has been read so far may still become valid: the largest is kept and checked at the end.
+// Converts an index of the file to one from 1; 0 for a missing or invalid index. An index beyond
+// the vectors read so far may still become valid, so the largest one is checked at the end of the
+// file.
 static uint32_t resolve_index(Obj *obj, int kind, int64_t index)
 {
     if (index < 0) index += (int64_t)obj->vectors[kind].count + 1;
@@ -185,7 +186,8 @@ static void read_corner(Obj *obj, uint32_t index[KIND_COUNT])
 static void read_face(Obj *obj)
 {
     Reader *reader = &obj->reader;
-    uint32_t corner[3][KIND_COUNT] = {{0}}; // the first, the one before, this one
+    // The polygon's first corner, the previous one, this one.
+    uint32_t corner[3][KIND_COUNT] = {{0}};
     size_t corners = 0;
     while (obj_goes_on(reader)) {
         memcpy(corner[1], corner[2], sizeof corner[1]);
@@ -219,7 +221,7 @@ static void read_statements(Obj *obj)
     }
 }
 
-// A direction or position in the file's axes, y up.
+// Converts a position or direction to metres and y up.
 static void turn(float to[3], const float from[3], float unit, bool up_z)
 {
     to[0] = from[0] * unit;
@@ -227,7 +229,7 @@ static void turn(float to[3], const float from[3], float unit, bool up_z)
     to[2] = (up_z ? -from[1] : from[2]) * unit;
 }
 
-// Replaces computed normals where the file gives some. False when memory is short.
+// Replaces computed normals by those of the file, where it has some. False if memory is short.
 static bool apply_normals(Mesh *mesh, const Obj *obj, bool up_z)
 {
     float(*sum)[3] = calloc((size_t)mesh->vertex_count + 1, sizeof *sum);
@@ -251,7 +253,7 @@ static bool apply_normals(Mesh *mesh, const Obj *obj, bool up_z)
     return true;
 }
 
-// Fills the mesh, with texture coordinates if any corner names one. False when memory is short.
+// Fills the mesh; with texture coordinates if any corner has some. False if memory is short.
 static bool make_mesh(Mesh *mesh, const Obj *obj, float unit, bool up_z)
 {
     const float(*position)[3] = obj->vectors[OBJ_VERTEX].data;
@@ -266,7 +268,7 @@ static bool make_mesh(Mesh *mesh, const Obj *obj, float unit, bool up_z)
         if (mesh_create_uv(mesh, (uint32_t)uvs->count, NULL) != RESULT_OK) return false;
         memcpy(mesh->uv, uvs->data, uvs->count * sizeof *mesh->uv);
         for (size_t i = 0; i < 3 * triangles; i++)
-            mesh->triangle_uv[i / 3][i % 3] = uv[i] - 1; // 0, none, becomes MESH_NO_UV
+            mesh->triangle_uv[i / 3][i % 3] = uv[i] - 1; // 0 (absent) becomes MESH_NO_UV
     }
     return obj->vectors[OBJ_NORMAL].count == 0 || apply_normals(mesh, obj, up_z);
 }
@@ -290,7 +292,7 @@ Result obj_read_mesh_bytes(Mesh *mesh, const char *path, const Bytes *bytes, flo
     return obj.reader.result;
 }
 
-// --- Writing one.
+// --- Writing a mesh.
 
 Result obj_write_mesh(const char *path, const Mesh *mesh, Error *error)
 {

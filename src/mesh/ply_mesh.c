@@ -12,7 +12,7 @@ typedef enum Role { X, Y, Z, STRANDS, INDICES, INDEX, ROLES } Role;
 static const char *const ROLE_NAMES[ROLES] = {"x",           "y", "z", "nsegs", "vertex_indices",
                                               "vertex_index"};
 
-enum { MOST_CORNERS = 4096 }; // of a polygon
+enum { MOST_CORNERS = 4096 }; // corners of a polygon
 
 typedef struct PlyMesh {
     PlyFile file;

@@ -13,7 +13,7 @@ static bool cut_before(const SampleTimes *times, uint32_t sample)
     return sample == 0 || (times->cut && times->cut[sample - 1]);
 }
 
-// weight[0] belongs to a sample that is not there: p[-1] = 3 p[0] - 3 p[1] + p[2].
+// weight[0] is that of a sample before the first. Replaces it by p[-1] = 3 p[0] - 3 p[1] + p[2].
 static void extrapolate(double *missing, double *first, double *second, double *third, bool three)
 {
     double w = *missing;
@@ -39,10 +39,10 @@ static void make_smooth(SampleSpan *span, const SampleTimes *times, uint32_t k, 
 
 SampleSpan sample_span(const SampleTimes *times, double time)
 {
-    // Times that are whole samples but for rounding are these samples: a cut is where it should be.
+    // Rounds times that are nearly those of a sample, so that a cut happens at its sample.
     const double rounding = 1e-6;
     double last = times->count - 1.0, x = fmin(fmax((time - times->start) * times->rate, 0), last);
-    if (!(x > 0)) x = 0; // not a number
+    if (!(x > 0)) x = 0; // also if NaN
     if (fabs(x - round(x)) < rounding) x = round(x);
     uint32_t k = (uint32_t)x;
     double u = x - k;

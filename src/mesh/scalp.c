@@ -16,9 +16,9 @@ static double distance_along(const HeadPatch *patch, const Double3 direction, do
     return head_patch_distance(patch, at);
 }
 
-// Narrows the ends about a crossing to 1e-14 m: regula falsi that halves the value of an end that
-// stays (the Illinois method; Dowell and Jarratt 1971, "A modified regula falsi method for
-// computing the root of an equation").
+// Narrows a bracket around the surface to 1e-14 m by the Illinois method, a regula falsi that
+// halves the value of an end that was kept twice (Dowell and Jarratt 1971, "A modified regula falsi
+// method for computing the root of an equation").
 static void narrow(const HeadPatch *patch, const Double3 direction, double *inside, double *outside)
 {
     enum { ROUNDS = 40 };
@@ -41,8 +41,9 @@ static void narrow(const HeadPatch *patch, const Double3 direction, double *insi
     }
 }
 
-// Where the head begins in the 2 mm below a radius outside: by 40 halvings, of which only the first
-// ones, and those between the ends that narrow() finds, need distances.
+// The radius of the surface, which is within 2 mm below the radius `outside`. The result is that of
+// 40 plain bisections, so that it does not depend on the method. Only the first ones, and those
+// within the bracket of narrow(), need to evaluate the distance.
 static double find_crossing(const Double3 direction, double outside)
 {
     enum { HALVINGS = 40, PLAIN = 6 };
@@ -104,8 +105,8 @@ static double smooth(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-// The head's hair line: from the nape, behind and over the ears, past the temples to the forehead.
-// docs/fur.md has it as a formula.
+// The height of the hair line as a function of z: from the nape, behind and over the ears, past the
+// temples to the forehead. docs/fur.md has the formula.
 static double hair_line(double z)
 {
     return -0.085 + 0.099 * smooth(-0.06, -0.022, z) + 0.056 * smooth(0.015, 0.075, z);
@@ -124,18 +125,18 @@ static double area_ratio(double radius, double across)
     return radius * radius / fmax(across, 0.2);
 }
 
-// Whether hair may grow on the head in a direction where it begins below `outside`; false only if
-// none does. The hair line rises with z, so the ends of the range tell.
+// Whether hair may grow in a direction in which the surface is below the radius `outside`. A
+// conservative test: the hair line rises with z, so it is enough to test the ends of the range.
 static bool may_have_hair(const Double3 direction, double outside)
 {
-    const double least = 0.05; // the head is thicker everywhere
+    const double least = 0.05; // a lower bound of the head's radius
     double high = direction[1] > 0.0 ? outside : least, near = direction[2] > 0.0 ? least : outside;
     return high * direction[1] > hair_line(near * direction[2]);
 }
 
-// The outermost point of the head in a direction, from outside in steps that cannot cross it, then
-// exactly. False as soon as it is plain that no hair grows there, or that the area ratio is below
-// `least`: the normal just outside is turned by less than a fifth of its length.
+// Finds the outermost point of the head in a direction: sphere tracing from outside, then an exact
+// search. Returns false early if no hair can grow there or if the area ratio is below `least`; the
+// 0.2 allows for the change of the normal between the last step and the surface.
 static bool find_head_root(double least, ScalpRoot *root)
 {
     const double *direction = root->direction;
@@ -157,8 +158,8 @@ static bool find_head_root(double least, ScalpRoot *root)
     return least <= area_ratio(root->radius, double3_dot(root->normal, direction));
 }
 
-// Finds radius and normal of the root in its direction; false if no hair grows there, or the area
-// ratio is below `least`.
+// Finds the radius and the normal of the root in its direction. False if no hair grows there or if
+// the area ratio is below `least`.
 static bool find_root(const ScalpRoots *roots, double least, ScalpRoot *root)
 {
     if (roots->shape == SCALP_HEAD) return find_head_root(least, root);
@@ -168,7 +169,8 @@ static bool find_root(const ScalpRoots *roots, double least, ScalpRoot *root)
            least <= area_ratio(root->radius, double3_dot(root->normal, root->direction));
 }
 
-// Archimedes: even in y and in the angle about the y axis is even on the sphere.
+// Maps the unit square uniformly to the sphere. By Archimedes' theorem, that is uniform in y and in
+// the angle about the y axis.
 static void map_to_sphere(double u, double v, Double3 direction)
 {
     double y = 1.0 - 2.0 * u, flat = sqrt(fmax(0.0, 1.0 - y * y));
@@ -190,14 +192,14 @@ ScalpRoots scalp_roots_begin(ScalpShape shape, bool everywhere, uint32_t seed)
             roots.heaviest = fmax(
                 roots.heaviest, area_ratio(root.radius, double3_dot(root.normal, root.direction)));
     }
-    roots.heaviest *= 1.05; // the grid may have missed the very top
+    roots.heaviest *= 1.05; // the grid may have missed the maximum
     return roots;
 }
 
-// Element `number` of a low-discrepancy sequence in three dimensions (additive recurrence with
-// powers of the inverse of g, g^4 = g + 1: Roberts 2018, "The unreasonable effectiveness of
-// quasirandom sequences"). Two dimensions give the direction, the third thins out by area. False:
-// no root.
+// Element `number` of a three-dimensional low-discrepancy sequence: an additive recurrence with the
+// powers of 1/g, g^4 = g + 1 (Roberts 2018, "The unreasonable effectiveness of quasirandom
+// sequences"). Two dimensions give the direction; the third rejects candidates in proportion to the
+// area. False if it is rejected.
 static bool find_candidate(const ScalpRoots *roots, uint64_t number, ScalpRoot *root)
 {
     static const Double3 alpha = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
@@ -248,7 +250,8 @@ static void set_triangle(Mesh *mesh, uint32_t t, const uint32_t triangle[3], con
     }
 }
 
-// Texture coordinates have a column more than there are vertices around: the seam, at the back.
+// There is one more column of texture coordinates than of vertices, because of the seam at the
+// back.
 static void add_ring_triangles(Mesh *mesh, uint32_t ring, uint32_t rings)
 {
     uint32_t around = 2 * rings, t = ring == 0 ? 0 : around * (2 * ring - 1);

@@ -3,28 +3,28 @@
 
 #include <stdlib.h>
 
-// The sum of squared distances from planes, weighted: p A p + 2 b p + c with A symmetric.
+// A weighted sum of squared distances from planes: p A p + 2 b p + c with symmetric A.
 typedef struct Quadric {
     double a[6], b[3], c;
 } Quadric;
 
-// An edge that may be merged; out of date when one of its ends has changed since.
+// A candidate edge collapse. It is outdated if one of its vertices has changed since.
 typedef struct Merge {
     double cost;
     uint32_t from, to; // from > to
     uint32_t from_age, to_age;
 } Merge;
 
-// Corner k of triangle t is 3 t + k. The corners of a vertex are a ring.
+// Corner k of triangle t has the number 3 t + k. The corners of a vertex form a circular list.
 typedef struct Work {
     Mesh *mesh;
     Double3 *place;   // [vertices]
     Quadric *quadric; // [vertices]
-    uint32_t *age;    // [vertices], how often it has changed
-    uint32_t *first;  // [vertices], a corner
-    uint32_t *next;   // [corners]
+    uint32_t *age;    // [vertices], number of changes
+    uint32_t *first;  // [vertices], one of the corners
+    uint32_t *next;   // [corners], the next corner of the same vertex
     bool *gone;       // [triangles]
-    uint32_t left;    // triangles
+    uint32_t left;    // remaining triangles
     Merge *heap;
     size_t heap_count, heap_room;
 } Work;
@@ -60,7 +60,7 @@ static double quadric_at(const Quadric *q, const Double3 p)
     return square + 2.0 * (mixed + b[0] * p[0] + b[1] * p[1] + b[2] * p[2]) + q->c;
 }
 
-// Twice the area of a triangle, and its normal.
+// Returns twice the area of a triangle and sets its unit normal.
 static double find_normal(const Double3 a, const Double3 b, const Double3 c, Double3 normal)
 {
     Double3 u, v;
@@ -82,7 +82,7 @@ static void add_triangles(Work *work, double (*weight)(const Double3 at))
     }
 }
 
-// --- The heap: the least cost on top, then the least numbers.
+// --- The heap, ordered by cost; equal costs by vertex numbers, so that results are repeatable.
 
 static bool comes_before(const Merge *a, const Merge *b)
 {
@@ -125,7 +125,7 @@ static Merge pop(Work *work)
 
 // --- Edges.
 
-// Where the merged vertex lies: at either end or in the middle.
+// Chooses the merged vertex's position: one of the ends or the middle. Returns its cost.
 static double find_place(const Work *work, uint32_t a, uint32_t b, Double3 place)
 {
     Quadric sum = work->quadric[a];
@@ -141,10 +141,11 @@ static double find_place(const Work *work, uint32_t a, uint32_t b, Double3 place
     return least;
 }
 
-// On a plane all places cost nothing: short edges go first then.
+// Adds a candidate. The small cost per length collapses short edges first where all costs are 0, as
+// in a plane.
 static bool offer(Work *work, uint32_t a, uint32_t b)
 {
-    static const double PER_LENGTH = 1e-7; // of a length's fourth power
+    static const double PER_LENGTH = 1e-7; // of the fourth power of the length
     uint32_t from = a > b ? a : b, to = a > b ? b : a;
     Double3 place, way;
     double3_subtract(work->place[a], work->place[b], way);
@@ -153,8 +154,8 @@ static bool offer(Work *work, uint32_t a, uint32_t b)
     return push(work, (Merge){cost, from, to, work->age[from], work->age[to]});
 }
 
-// The triangles of `v` but those of `other`, when v is at `place`: whether one is turned over or
-// becomes a needle.
+// Whether moving `v` to `place` flips one of its triangles or makes it a needle. Triangles that
+// contain `other` are not checked, since they disappear.
 static bool would_fold(const Work *work, uint32_t v, uint32_t other, const Double3 place)
 {
     uint32_t c = work->first[v];
@@ -176,7 +177,7 @@ static bool would_fold(const Work *work, uint32_t v, uint32_t other, const Doubl
     return false;
 }
 
-// Whether a triangle of v that lives has `other`.
+// Whether a remaining triangle of v contains `other`.
 static bool are_neighbours(const Work *work, uint32_t v, uint32_t other)
 {
     uint32_t c = work->first[v];
@@ -190,7 +191,8 @@ static bool are_neighbours(const Work *work, uint32_t v, uint32_t other)
     return false;
 }
 
-// An edge of a closed surface has two neighbours in common; more would make a fold.
+// The ends of an edge of a closed surface have two common neighbours. With more, the collapse would
+// pinch the surface.
 static bool would_pinch(const Work *work, uint32_t from, uint32_t to)
 {
     int common = 0;
@@ -219,7 +221,7 @@ static bool merge(Work *work, uint32_t from, uint32_t to, const Double3 place)
         }
         c = work->next[c];
     } while (c != work->first[from]);
-    // Two rings become one.
+    // Swapping two links joins the two circular lists.
     uint32_t swap = work->next[work->first[from]];
     work->next[work->first[from]] = work->next[work->first[to]];
     work->next[work->first[to]] = swap;
@@ -258,7 +260,7 @@ static bool merge_all(Work *work, uint32_t triangle_count)
     return true;
 }
 
-// --- Begin and end.
+// --- Beginning and end.
 
 static bool begin(Work *work, Mesh *mesh, double (*weight)(const Double3 at))
 {
@@ -288,7 +290,7 @@ static bool begin(Work *work, Mesh *mesh, double (*weight)(const Double3 at))
     return true;
 }
 
-// Moves what is left to the front, in order.
+// Moves the remaining vertices and triangles to the front, in their order.
 static void pack(Work *work)
 {
     Mesh *mesh = work->mesh;

@@ -8,13 +8,13 @@ enum { LEAF = 4, DEEPEST = 64 };
 
 struct SurfaceNode {
     Double3 low, high;
-    uint32_t begin, end; // of Surface.triangle
-    uint32_t right;      // the left child is the next node; 0: a leaf
+    uint32_t begin, end; // range in Surface.triangle
+    uint32_t right;      // the left child is the next node; 0 marks a leaf
 };
 
 // --- Triangles.
 
-// The places of a triangle's corners.
+// The positions of a triangle's corners.
 static void find_corners(const Mesh *mesh, uint32_t triangle, Double3 corner[3])
 {
     for (int k = 0; k < 3; k++)
@@ -66,7 +66,7 @@ bool surface_uv(const Surface *surface, const SurfacePoint *point, double uv[2])
     return true;
 }
 
-// P = P0 + a E1 + b E2 and (u, v) = (u0, v0) + a F1 + b F2: solved for dP/du and dP/dv.
+// Solves P = P0 + a E1 + b E2 and (u, v) = (u0, v0) + a F1 + b F2 for dP/du and dP/dv.
 bool surface_uv_axes(const Surface *surface, const SurfacePoint *point, Double3 u, Double3 v)
 {
     const Mesh *mesh = surface->mesh;
@@ -97,7 +97,7 @@ static double middle_of(const Mesh *mesh, uint32_t triangle, int axis)
     return sum;
 }
 
-// Hoare's selection, as in nearest.c: the middle one of begin .. end - 1 comes to its place.
+// Hoare's selection as in nearest.c: puts the median of begin .. end - 1 in its place.
 static void split(Surface *surface, uint32_t begin, uint32_t end, uint32_t middle, int axis)
 {
     int64_t low = begin, high = (int64_t)end - 1;
@@ -133,7 +133,7 @@ static void set_box(const Surface *surface, SurfaceNode *node)
     }
 }
 
-// Returns the node behind the last of this subtree.
+// Builds a subtree and returns the index of the next free node.
 static uint32_t build(Surface *surface, uint32_t at, uint32_t begin, uint32_t end)
 {
     SurfaceNode *node = &surface->nodes[at];
@@ -149,9 +149,9 @@ static uint32_t build(Surface *surface, uint32_t at, uint32_t begin, uint32_t en
     return build(surface, node->right, middle, end);
 }
 
-// --- Normals of edges and corners, by which a point is inside or outside.
+// --- Normals of edges and corners, which tell whether a point is inside or outside.
 
-// An angle's size from its cosine, within 7e-5 (Abramowitz and Stegun 4.4.45).
+// The angle with this cosine, to within 7e-5 (Abramowitz and Stegun 4.4.45).
 static double angle_of(double cosine)
 {
     double x = fmin(fabs(cosine), 1.0);
@@ -172,7 +172,7 @@ static int compare_spots(const void *a, const void *b)
     return p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
 }
 
-// same[v]: the first of the vertices that lie where v does. False when memory is short.
+// same[v] is the first of the vertices at the position of v. False if memory is short.
 static bool find_same(const Mesh *mesh, uint32_t *same)
 {
     Spot *spots = malloc(((size_t)mesh->vertex_count + 1) * sizeof *spots);
@@ -236,9 +236,9 @@ static void add_corners(Surface *surface, const uint32_t *same, uint32_t t)
     }
 }
 
-// Fills edge_normal and corner_normal, which hold zeros. Vertices that lie in one place count as
-// one. An edge has the sum of the normals of its triangles, a corner that of its triangles by their
-// angles there (Baerentzen and Aanaes 2005). False when memory is short.
+// Fills edge_normal and corner_normal, which must be zero. Vertices at the same position count as
+// one. The normal of an edge is the sum of its triangles' normals; that of a corner is their sum
+// weighted by the angles at the corner (Baerentzen and Aanaes 2005). False if memory is short.
 static bool compute_normals(Surface *surface)
 {
     const Mesh *mesh = surface->mesh;
@@ -302,7 +302,7 @@ void surface_destroy(Surface *surface)
 
 // --- The nearest point.
 
-// A side of a triangle or a share along it: weights of the point of edge a b nearest to p.
+// The barycentric weights of the point of edge a b that is nearest to p.
 static void nearest_on_edge(const Double3 corner[3], const Double3 p, int a, Double3 weight)
 {
     int b = (a + 1) % 3;
@@ -315,7 +315,8 @@ static void nearest_on_edge(const Double3 corner[3], const Double3 p, int a, Dou
     weight[(a + 2) % 3] = 0.0;
 }
 
-// The projection onto the plane if all its weights are positive, else the best of the edges.
+// The projection of p onto the triangle's plane, if it is inside the triangle; otherwise the
+// nearest point of the edges.
 static double nearest_on_triangle(const Mesh *mesh, uint32_t triangle, const Double3 p,
                                   Double3 weight)
 {
@@ -369,8 +370,8 @@ static void try_triangle(const Surface *surface, uint32_t triangle, const Double
     double3_copy(weight, nearest->weight);
 }
 
-// The normal that separates inside from outside: of the face, or of the edge or corner where
-// weights are 0.
+// The normal that decides between inside and outside: that of the face, or of the edge or corner if
+// the point is on one (weights are 0).
 static const double *find_side(const Surface *surface, const SurfacePoint *point, Double3 face)
 {
     int zeros = 0, zero = 0, full = 0;

@@ -8,13 +8,14 @@
 typedef struct Build {
     const SurfaceNet *net;
     Mesh *mesh;
-    double *value;    // of the grid's points
-    uint32_t *vertex; // of the cells, by their first point; NO_VERTEX: the surface is elsewhere
+    double *value;    // [points of the grid]
+    uint32_t *vertex; // [cells], by their first point; NO_VERTEX if the surface does not cross the
+                      // cell
     Double3 *place;   // [vertices]
-    Double3 *middle;  // [vertices], sums over neighbours
-    uint32_t *degree; // [vertices], number of those
+    Double3 *middle;  // [vertices], sums over the neighbours
+    uint32_t *degree; // [vertices], number of neighbours
     uint32_t vertex_count, triangle_count;
-    size_t step[3]; // from point to point along each axis
+    size_t step[3]; // index step from point to point along each axis
 } Build;
 
 static size_t point_at(const Build *build, const uint32_t p[3])
@@ -27,7 +28,8 @@ static void place_point(const SurfaceNet *net, const uint32_t p[3], Double3 plac
     for (int i = 0; i < 3; i++) place[i] = net->line[i][p[i]];
 }
 
-// The grid's points in order; false after the last but `margin` of each line.
+// Steps to the next point of the grid. False after the last one; the last `margin` points of each
+// line are skipped.
 static bool next_point(const SurfaceNet *net, uint32_t margin, uint32_t p[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -37,8 +39,8 @@ static bool next_point(const SurfaceNet *net, uint32_t margin, uint32_t p[3])
     return false;
 }
 
-// Along a line no point is asked that is nearer to the last than half of its distance, as its sign
-// is the same.
+// Fills in the values line by line. Points that are nearer to the last evaluated point than half
+// its distance from the surface copy its value, because they have the same sign.
 static void measure(Build *build)
 {
     const double *line = build->net->line[0];
@@ -55,7 +57,7 @@ static void measure(Build *build)
     } while (next_point(build->net, 0, p));
 }
 
-// The mean of the places where the surface crosses the cell's edges; false if it crosses none.
+// The mean of the points where the surface crosses the edges of the cell; false if it crosses none.
 static bool find_middle(const Build *build, const uint32_t cell[3], Double3 middle)
 {
     int crossings = 0;
@@ -99,7 +101,7 @@ static void add_triangle(Build *build, uint32_t a, uint32_t b, uint32_t c)
     triangle[0] = a, triangle[1] = b, triangle[2] = c;
 }
 
-// The four cells around an edge of the grid, counter-clockwise from the edge's end.
+// The four cells around an edge of the grid, counter-clockwise as seen from the end of the edge.
 static void find_quad(const Build *build, const uint32_t p[3], int axis, uint32_t quad[4])
 {
     static const uint32_t back[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
@@ -111,7 +113,7 @@ static void find_quad(const Build *build, const uint32_t p[3], int axis, uint32_
     }
 }
 
-// Calls `act` for each edge of the grid that the surface crosses, with its quad, outward.
+// Calls `act` for the quad of each grid edge that the surface crosses, oriented outwards.
 static void each_quad(Build *build, void (*act)(Build *build, const uint32_t quad[4]))
 {
     uint32_t p[3] = {0};
@@ -148,7 +150,7 @@ static void gather_quad(Build *build, const uint32_t quad[4])
     }
 }
 
-// Along the shorter diagonal.
+// Splits the quad along its shorter diagonal.
 static void split_quad(Build *build, const uint32_t quad[4])
 {
     Double3 *place = build->place;
@@ -159,7 +161,7 @@ static void split_quad(Build *build, const uint32_t quad[4])
     add_triangle(build, q[first], q[first + 2], q[(first + 3) % 4]);
 }
 
-// Newton's method.
+// Moves the point onto the surface by Newton's method.
 void surface_net_project(const SurfaceNet *net, Double3 place)
 {
     Double3 normal;
@@ -169,7 +171,7 @@ void surface_net_project(const SurfaceNet *net, Double3 place)
     }
 }
 
-// Half the way to the middle of the neighbours, along the surface.
+// Moves each vertex half of the way to the mean of its neighbours, tangentially to the surface.
 static void smooth(Build *build)
 {
     memset(build->middle, 0, build->vertex_count * sizeof *build->middle);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tool of the build: writes STAND_IN_TABLE (mesh/stand_in.h) as C to standard output.
+// A build tool that writes STAND_IN_TABLE (mesh/stand_in.h) as C to standard output.
 #include "mesh/head.h"
 #include "mesh/stand_in.h"
 

@@ -24,7 +24,7 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
     };
 }
 
-// What a file asks for and this program does not do.
+// Warns about requests of the file that are not supported.
 static void warn_ignored(const Strands *strands, const char *file, FILE *messages)
 {
     if (strands->both_ends_fixed)
@@ -40,7 +40,7 @@ static Result take_given(Assets *assets, uint32_t i, const Strands *given, Error
     return strands_report_measure(report, given, error);
 }
 
-// What the file says of its look.
+// Prints the look that the file asks for.
 static void print_look(const Strands *strands, const Section *section, FILE *messages)
 {
     char look[160];
@@ -77,7 +77,7 @@ static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE 
     return RESULT_OK;
 }
 
-// Half of the roots' distances from the mesh tell that it is another one.
+// The median distance of the roots from the mesh shows whether the hair belongs to it.
 static void warn_apart(const Body *body, FILE *messages)
 {
     float apart = body_distance(body);
@@ -88,7 +88,7 @@ static void warn_apart(const Body *body, FILE *messages)
                 quote(body->name).text, 1e3 * (double)apart);
 }
 
-// Binds the hair to the mesh, and lets the mesh move the head.
+// Binds the hair to the mesh, and makes the mesh move the head.
 static Result bind_hair(Assets *assets, Scene *scene, MeshSequence *sequence, const Mesh *rest,
                         FILE *messages, Error *error)
 {
@@ -126,8 +126,8 @@ static Result load_sequence(Assets *assets, Scene *scene, const MeshSequenceOpti
     return result;
 }
 
-// Two samples, alike: body_drive says what comes. A vertex may come as far as a quarter of the
-// mesh's longest side from where it is.
+// Prepares a mesh that the caller drives by body_drive: two equal samples stand for the samples to
+// come. Vertices may move by up to a quarter of the mesh's longest side.
 static Result drive_given(Assets *assets, Scene *scene, FILE *messages, Error *error)
 {
     const Mesh *mesh = &assets->mesh, none = {0};
@@ -138,7 +138,7 @@ static Result drive_given(Assets *assets, Scene *scene, FILE *messages, Error *e
     if (!sequence.position)
         return error_set(error, RESULT_FAILED, "no memory for a mesh that deforms");
     for (uint32_t i = 0; i < 2; ++i) memcpy(mesh_sequence_at(&sequence, i), mesh->position, size);
-    rigid_track_destroy(&scene->head); // it moves as it is told
+    rigid_track_destroy(&scene->head); // the caller moves the head
     Result result = bind_hair(assets, scene, &sequence, &none, messages, error);
     mesh_sequence_destroy(&sequence);
     if (result != RESULT_OK) return result;
@@ -222,7 +222,7 @@ Result assets_check(const Scene *scene, FILE *stream)
         Strands strands;
         StrandsReport report;
         Error error;
-        options.strict = false; // everything is reported
+        options.strict = false; // report all defects, do not refuse the file
         Result result = strands_read(&strands, section->file, &options, &report, &error);
         if (result == RESULT_OK) {
             strands_report_print(&report, section->file, stream);

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// As many roots tell where the head is.
+// At most this many roots are used to find the head's motion.
 enum { MOST_POINTS = 20000 };
 
-static const double FULL_RATE = 24; // samples a second at which the limits of cuts hold
+// Sample rate (per second) for which the limits of cuts are defined.
+static const double FULL_RATE = 24;
 
 static void anchors_destroy(BodyAnchors *anchors)
 {
@@ -107,12 +108,13 @@ static void find_middle(const BodyAnchors *anchors, Double3 middle)
         double3_add_scaled(middle, 1.0 / anchors->count, anchors->from[i]);
 }
 
-// The head at each sample, relative to where it is at sample `origin`.
+// Finds the head's motion at each sample, relative to sample `origin`.
 static void find_motions(Body *body, BodyAnchors *anchors, uint32_t origin)
 {
     MeshSequence *sequence = &body->sequence;
     place_anchors(anchors, (const float(*)[3])mesh_sequence_at(sequence, origin), anchors->from);
-    for (int64_t way = -1; way <= 1; way += 2) { // so that neighbours in time are neighbours
+    // From the origin in both directions, so that each fit starts from its neighbour in time.
+    for (int64_t way = -1; way <= 1; way += 2) {
         RigidMotion near = {.rotation = {0, 0, 0, 1}};
         for (int64_t i = origin; i >= 0 && i < sequence->times.count; i += way) {
             place_anchors(anchors, (const float(*)[3])mesh_sequence_at(sequence, (uint32_t)i),
@@ -155,7 +157,7 @@ static void move_points(const RigidMotion *motion, float (*position)[3], size_t 
     }
 }
 
-// Makes motions those from time 0 on, and positions those that the head sees.
+// Makes the motions relative to time 0, and converts the positions to the head's frame.
 static void part_motion(Body *body)
 {
     MeshSequence *sequence = &body->sequence;
@@ -187,7 +189,7 @@ void body_drive(Body *body, float (*position)[3], double before, double after)
 
 // --- The groom.
 
-// Carries all strands by the mesh's way from rest to `position`.
+// Carries all strands from the rest pose to `position`.
 static Result carry_groom(const Body *body, const Mesh *rest, const float (*position)[3],
                           Strands *strands, Error *error)
 {

@@ -16,7 +16,7 @@ static void auto_or_keyed(const Keyframes *keys, const AutoVec3 *param, const fl
         memcpy(value, param->automatic ? automatic : param->value, sizeof(vec3));
 }
 
-// Unit vector that is not parallel to `direction` (unit): `wanted` if that will do.
+// Chooses an up vector (unit) that is not parallel to `direction` (unit): `wanted`, if possible.
 static void choose_up(const float wanted[3], vec3 direction, vec3 up)
 {
     vec3 across;
@@ -30,15 +30,15 @@ static void choose_up(const float wanted[3], vec3 direction, vec3 up)
 
 // --- The turntable.
 
-// Integral of 3 s^2 - 2 s^3 from 0 to s.
+// The integral of 3 s^2 - 2 s^3 from 0 to s.
 static double eased(double s)
 {
     return s * s * s - 0.5 * s * s * s * s;
 }
 
-// The share of the turn that is made after the share u of the sequence. With the full speed v, an
-// ease-in of length a comes v a/2 far, an ease-out of length b v b/2, what is between
-// v (1 - a - b), together 1.
+// The share of the turn that is done after the share u of the sequence. With full speed v, an
+// ease-in of length a covers v a/2, an ease-out of length b covers v b/2, the rest v (1 - a - b);
+// the sum is 1.
 static double turned(double u, double a, double b)
 {
     double v = 1 / (1 - 0.5 * (a + b));
@@ -55,7 +55,7 @@ double camera_turntable_deg(const RunParams *run, int frame)
     return fmod((double)run->turntable * (rounds + share), 360);
 }
 
-// Turns a vector by the turntable's angle, in place.
+// Rotates a vector by the turntable's angle, in place.
 static void turn(const Scene *scene, int frame, float vector[3])
 {
     double degrees = camera_turntable_deg(&scene->run, frame);
@@ -87,8 +87,8 @@ static void look_at(View *view, vec3 target, const float camera_up[3])
     glm_look(view->eye, direction, up, view->view);
 }
 
-// The near plane stands well before the expected hair, since real hair may swing beyond that, and
-// the far plane well behind it: depths of the hair itself do not depend on either.
+// Puts the near plane well in front of the expected hair, which may swing out, and the far plane
+// well behind it. The depth values of the hair do not depend on these planes.
 static void find_depths(View *view, const Outline *all)
 {
     float nearest = 1e30f, farthest = 0;

@@ -12,7 +12,7 @@ enum { FRAME_any, FRAME_world };
 
 static const struct {
     const char *name, *numbers; // "sphere", "x,y,z,radius"
-    bool world;                 // it always stands there
+    bool world;                 // always fixed to the world
 } TABLE[COLLIDER_KINDS] = {
 #define ROW(kind, name, numbers, frame) {#name, COLLIDER_STRING numbers, FRAME_##frame},
     COLLIDERS(ROW, ROW)
@@ -22,7 +22,7 @@ static const struct {
 static const char *const FRAME_WORDS[] = {"head", "world", NULL};
 static const float FARTHEST = (float)COLLIDERS_FARTHEST;
 
-// The name of number `i` of a kind, with those behind it; NULL if there are not as many.
+// The name of number `i` of a kind and of those that follow; NULL if there is no such number.
 static const char *number_name(ColliderKind kind, uint32_t i)
 {
     const char *at = TABLE[kind].numbers;
@@ -92,7 +92,7 @@ static Result refuse(const char *text, Error *error, const char *form, const cha
                      text, expected);
 }
 
-// Takes `word` and the ':' behind it from the text if they stand there.
+// Skips `word` and the ':' after it, if the text begins with them.
 static bool take_word(const char **text, const char *word)
 {
     size_t length = strlen(word);
@@ -103,7 +103,7 @@ static bool take_word(const char **text, const char *word)
     return true;
 }
 
-// Exactly `count` decimal numbers with commas between them; false if it is anything else.
+// Reads exactly `count` decimal numbers separated by commas; false otherwise.
 static bool take_numbers(const char **text, float *numbers, uint32_t count)
 {
     for (uint32_t i = 0; i < count; ++i) {
@@ -146,14 +146,14 @@ Result colliders_parse(Colliders *colliders, const char *text, Error *error)
 
 // --- JSON.
 
-// What is wrong with a value by itself, at its place.
+// Turns the error of a value into an error at its place.
 static Result at_place(const JsonPlace *place, Result result, const Error *why, Error *error)
 {
     if (result == RESULT_USAGE) return json_fail(place, error, "%s", why->text);
     return result == RESULT_OK ? result : error_set(error, result, "%s", why->text);
 }
 
-// The object's one key that is a shape.
+// Finds the only key of the object that names a shape.
 static Result find_kind(ColliderKind *found, const JsonPlace *place, const json_t *value,
                         Error *error)
 {
@@ -252,7 +252,7 @@ uint32_t colliders_group(ColliderKind kind)
     return is_cone(kind) ? 0 : 1 + kind - CONES;
 }
 
-// A cone one of whose ends lies in the other is that other's sphere.
+// If one end sphere of a cone lies inside the other, the cone is that other sphere.
 static void pack_cone(const Collider *collider, const float rotation[4], const float translation[3],
                       float texel[COLLIDER_TEXELS][4])
 {

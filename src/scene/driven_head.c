@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-// Takes the place of the scene's track, from where that has the head.
+// Replaces the scene's track, starting from the pose that the track has at that time.
 static void take_over(DrivenHead *head, Scene *scene, double time)
 {
     float rotation[4], translation[3], pivot[3];

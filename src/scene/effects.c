@@ -27,7 +27,7 @@ static bool reads_any_file(const Scene *scene)
     return any;
 }
 
-// An OBJ or PLY file is one shape; a pattern names several.
+// An OBJ or PLY file is a single shape; a pattern names a sequence.
 static bool may_deform(const char *mesh)
 {
     bool shape = writes(mesh, ".obj") || writes(mesh, ".ply");
@@ -37,7 +37,7 @@ static bool may_deform(const char *mesh)
 CONDITION(reads_files, reads_any_file(scene))
 CONDITION(reads_file, !of->given)
 CONDITION(reads_mesh, !scene->given_mesh)
-// A head may be fitted where there is no mesh.
+// Without a mesh, a head may be fitted to the hair.
 CONDITION(has_head, *scene->run.mesh || scene->run.scalp != SCALP_NONE)
 CONDITION(has_colliders,
           scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, of, section)))
@@ -75,9 +75,9 @@ CONDITION(has_style, section->style > 0)
 CONDITION(is_smooth, section->smooth > 1)
 CONDITION(moves, strcmp(section->algo, "none") != 0)
 
-// Each parameter's condition, and why it has no effect where that does not hold.
+// The condition of each parameter, and the reason to print if it does not hold.
 static const struct {
-    const char *names; // a blank between them
+    const char *names; // names, separated by blanks
     bool (*holds)(const Scene *scene, const Section *of, const SectionParams *section);
     const char *why;
 } EFFECTS[] = {
@@ -133,7 +133,8 @@ static bool lists(const char *names, const char *name)
     return false;
 }
 
-// Why the parameter has no effect in the section, or in the run if that is NULL; NULL: it has one.
+// Why the parameter has no effect in the section (NULL: in the run). Returns NULL if it has an
+// effect.
 static const char *find_reason(const ParamInfo *info, const Scene *scene, const Section *section,
                                char text[80])
 {
@@ -150,8 +151,8 @@ static const char *find_reason(const ParamInfo *info, const Scene *scene, const 
     return NULL;
 }
 
-// The same for all sections whose value has this origin; NULL if it has an effect in one of them or
-// none has that origin.
+// Why the parameter has no effect in any section that got its value from `origin`. NULL if it has
+// an effect in one of them, or if there are none.
 static const char *find_shared_reason(const ParamInfo *info, const Scene *scene, Origin origin,
                                       char text[80])
 {

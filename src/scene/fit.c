@@ -13,7 +13,7 @@ bool fit_is_free(const Scene *scene)
     return scene->run.eye.automatic && !scene->eye.count && !scene->target.count;
 }
 
-// `side` of the view (0: right, 1: top) and its opposite.
+// Sets a pair of opposite sides of the view: right and left (`side` 0) or top and bottom (1).
 static void set_sides(FitSide sides[2], const View *view, int side, float slope, float scale)
 {
     for (int i = 0; i < 2; ++i) {
@@ -67,10 +67,10 @@ void fit_add(Fit *fit, int frame, const float (*points)[3], size_t count, float 
 
 typedef struct Search {
     const Fit *fit;
-    int sides;         // of a frame that count: 2, left and right, or 4
-    double axis[2][3]; // along which the target moves, unit vectors
+    int sides;         // sides of a frame to consider: 2 (left and right) or 4
+    double axis[2][3]; // unit vectors along which the target may move
     int axes;
-    double reach; // m, how far either way
+    double reach; // m, largest move in either direction
 } Search;
 
 static double distance_needed(const Search *search, const double target[3])
@@ -96,9 +96,10 @@ static double distance_at(const Search *search, int axis, const double from[3], 
     return search_along(search, axis + 1, moved, target);
 }
 
-// The least distance that is needed with the target at `from` moved along this axis and the
-// following ones, by golden sections: what is convex stays so when it is minimised over some of its
-// variables. 24 sections leave 1e-5 of the range; the distance is exact for the target found.
+// The smallest distance that is needed if the target may move from `from` along this axis and the
+// following ones. Nested golden-section searches are valid because a convex function stays convex
+// when it is minimised over some of its variables. 24 sections leave 1e-5 of the range; the
+// returned distance is exact for the returned target.
 static double search_along(const Search *search, int axis, const double from[3], double target[3])
 {
     const double golden = 0.61803398874989485;
@@ -137,9 +138,9 @@ static double room_to_search(const Framing *framing)
     return room;
 }
 
-// Puts the target of a whole turn on the axis from which left and right need the least, so that the
-// hair turns about its middle (above and below would prefer an axis for which it is far off when it
-// is high), and then at the best height.
+// For a whole turn, moves the target to the axis for which left and right need the smallest
+// distance, so that the hair turns about its middle. Top and bottom are not considered there: they
+// would prefer an axis that moves high hair away from the camera. Then finds the best height.
 static void find_target(const Fit *fit, const Scene *scene, const Framing *framing,
                         double target[3])
 {

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-static const float GAP = 0.01f; // below what stands on it, in heights of that
-static const float FADE = 3;    // faded over whole
+static const float GAP = 0.01f; // distance below the objects, in heights of the objects
+static const float FADE = 3;    // radius at which the floor has faded out, over the opaque one
 
 static float find_height(const Scene *scene, const Outline *all)
 {

@@ -12,8 +12,8 @@ static bool blows(const Scene *scene)
     return scene->wind.count > 0 || w[0] != 0 || w[1] != 0 || w[2] != 0;
 }
 
-// Three sines without a common period, so that gusts do not repeat soon. Weights add up to 1. Where
-// they shall repeat, each gets the nearest whole number of periods in that time.
+// Three sines with incommensurable periods, so that gusts do not repeat soon. The weights add up to
+// 1. With gust_repeat, each sine gets the nearest whole number of periods in that time.
 static double gust_at(const RunParams *run, double time)
 {
     static const struct {
@@ -38,9 +38,9 @@ static void perpendiculars(const vec3 main, vec3 a, vec3 b)
     glm_vec3_cross(n, a, b);
 }
 
-// The main wind turned by the spread to four sides. strand_wind (forces.glsl) mixes 0 with 1, 2
-// with 3, and the two: 0 and 3 are opposite corners of the square. Turning by t leaves cos t along
-// the main direction; dividing by it keeps the mean.
+// Turns the main wind by the spread to four sides. strand_wind (forces.glsl) mixes wind 0 with 1, 2
+// with 3, and then both results; 0 and 3 are opposite corners of the square. A wind turned by t
+// keeps cos t of its speed in the main direction, so it is divided by cos t to keep the mean.
 static void spread_wind(Forces *forces, const vec3 main, float spread_deg)
 {
     vec3 a = {0}, b = {0};

@@ -18,7 +18,7 @@ Result keyframes_append(Keyframes *keys, double time, const float *value, uint32
                          "time %.9g s is not later than that of the key before, %.9g s", time,
                          keys->time[keys->count - 1]);
     uint32_t count = keys->count;
-    // Room doubles whenever the count reaches a power of two.
+    // Room doubles when the count reaches a power of two.
     if ((count & (count - 1)) == 0) {
         size_t room = count ? 2 * (size_t)count : 1;
         double *times = realloc(keys->time, room * sizeof times[0]);
@@ -41,8 +41,7 @@ void keyframes_destroy(Keyframes *keys)
     *keys = (Keyframes){0};
 }
 
-// The last key that is not later than `time`, which lies from the first key's time on and before
-// the last's.
+// The last key that is not later than `time`, which must be in [first key, last key).
 static uint32_t find_key(const Keyframes *keys, double time)
 {
     uint32_t low = 0, high = keys->count - 1;
@@ -61,16 +60,16 @@ static double number_at(const Keyframes *keys, uint32_t key, uint32_t c)
     return (double)keys->value[(size_t)key * keys->width + c];
 }
 
-// Rise of number c per second between `key` and the next.
+// The slope of component c between `key` and the next key, per second.
 static double secant(const Keyframes *keys, uint32_t key, uint32_t c)
 {
     return (number_at(keys, key + 1, c) - number_at(keys, key, c)) /
            (keys->time[key + 1] - keys->time[key]);
 }
 
-// Slope of number c at `key`: the harmonic mean of the two secants, weighted by the lengths of the
-// intervals, and 0 where they differ in sign (Fritsch and Butland 1984, 'A method for constructing
-// local monotone piecewise cubic interpolants').
+// The slope of component c at `key`: the harmonic mean of the two secants, weighted by the lengths
+// of the intervals; 0 if the secants differ in sign (Fritsch and Butland 1984, 'A method for
+// constructing local monotone piecewise cubic interpolants').
 static double slope(const Keyframes *keys, uint32_t key, uint32_t c)
 {
     if (key == 0 || key == keys->count - 1) return 0.0;
@@ -97,7 +96,7 @@ void keyframes_evaluate(const Keyframes *keys, double time, float *value)
     for (uint32_t c = 0; c < keys->width; c++) {
         double from = number_at(keys, key, c), to = number_at(keys, key + 1, c), at = u;
         double bend = 0.0;
-        if (smooth) { // the cubic Hermite polynomial
+        if (smooth) { // cubic Hermite polynomial
             at = u * u * (3 - 2 * u);
             bend = h * u * (1 - u) * ((1 - u) * slope(keys, key, c) - u * slope(keys, key + 1, c));
         }

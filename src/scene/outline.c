@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Times, angles and vertices that are looked at; the margin covers what lies between.
+// Sampled times, angles and vertices. The margin allows for what lies between the samples.
 enum { TIMES = 16, ANGLES = 64, VERTICES = 50000 };
 
-// A spiral of equal areas (Fibonacci lattice) over the sphere.
+// Directions on a Fibonacci spiral, which are spaced evenly over the sphere.
 static void begin_outline(Outline *outline, const float point[3])
 {
     const float golden = 2.39996323f;
@@ -32,7 +32,7 @@ static void begin_outline(Outline *outline, const float point[3])
 void outline_add(Outline *outline, const float point[3])
 {
     if (!outline->any) begin_outline(outline, point);
-    // Loops without branches are done four at a time, and most points reach no farther.
+    // A loop without branches is vectorised, and most points do not extend the outline.
     float reach[OUTLINE_DIRECTIONS];
     int farther = 0;
     const float *x = outline->direction[0], *y = outline->direction[1], *z = outline->direction[2];
@@ -60,7 +60,7 @@ static void add_outline(Outline *outline, const Outline *more)
     for (int i = 0; i < OUTLINE_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
 }
 
-// Moves all that bounds the points outwards (m).
+// Moves all points of the outline outwards by `by` (m).
 static void grow_outline(Outline *outline, float by)
 {
     for (int i = 0; i < OUTLINE_DIRECTIONS && outline->any; ++i) {
@@ -70,7 +70,7 @@ static void grow_outline(Outline *outline, float by)
     for (int k = 0; k < 3 && outline->any; ++k) outline->low[k] -= by, outline->high[k] += by;
 }
 
-// State of everything that moves, at one time.
+// The state of everything that moves at one time.
 typedef struct Moment {
     versor rotation;
     vec3 translation, gravity, wind;
@@ -102,7 +102,7 @@ static void carry(const Moment *moment, const float point[3], float carried[3])
     for (int k = 0; k < 3; ++k) carried[k] += moment->translation[k];
 }
 
-// Every Nth strand is looked at, if each is looked at `times` times.
+// Uses every Nth strand, if each is visited `times` times.
 static uint32_t strand_stride(const Strands *strands, uint32_t times)
 {
     return 1 + (uint32_t)((uint64_t)strands->vertex_count * times / VERTICES);
@@ -115,7 +115,8 @@ static void add_style(Outline *outline, const Strands *strands)
             outline_add(outline, strands->position[v]);
 }
 
-// The strand at rest: from its root on, directions between that of `pull` (unit) and the style's.
+// Adds an estimate of the strand at rest: from the root on, its directions are a mix of the
+// direction of `pull` (unit) and the style's.
 static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s,
                             const Moment *moment, const float pull[3], float style)
 {
@@ -138,7 +139,8 @@ static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s
 static void add_rest(Outline *outline, const Strands *strands, const SectionParams *params,
                      const Moment *moment, uint32_t times)
 {
-    // A groom at rest on a head that stands still stays as it is; other forms of solvers may not.
+    // With the default variant, a groom at rest on a still head keeps its shape; other variants may
+    // not.
     bool rests = times == 1 && params->rest == REST_GROOM && params->style > 0 && !*params->variant;
     vec3 pull;
     for (int k = 0; k < 3; ++k)
@@ -167,7 +169,7 @@ static float farthest_follower(const Scene *scene, const Strands *strands)
     return farthest;
 }
 
-// How far the mesh has carried the strand's root, seen from the head.
+// How far the mesh has moved the strand's root, in the head's frame.
 static void root_moved(const Body *body, uint32_t section, uint32_t s, const float (*position)[3],
                        float moved[3])
 {
@@ -179,7 +181,8 @@ static void root_moved(const Body *body, uint32_t section, uint32_t s, const flo
     }
 }
 
-// The body at a time, and the style where its roots are then.
+// Adds the body at a time to `shape`, and the style at the roots' positions at that time to
+// `style`.
 static void outline_body(Outline *style, Outline *shape, const Scene *scene, const Strands *strands,
                          const float (*position)[3])
 {
@@ -201,7 +204,7 @@ static void add_body_at(Framing *framing, const Scene *scene, const Strands *str
 {
     Outline style = {0}, shape = {0};
     float(*position)[3] = malloc(scene->body->mesh->vertex_count * sizeof *position + 1);
-    if (!position) return; // the mesh as at time 0 is framed, then
+    if (!position) return; // then the camera frames the mesh at time 0
     mesh_sequence_evaluate(&scene->body->sequence, time, position);
     outline_body(&style, &shape, scene, strands, (const float(*)[3])position);
     add_carried(&framing->hair, &style, moment);
@@ -232,8 +235,8 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
     add_outline(&framing->all, &framing->hair);
 }
 
-// How far from the target the eye must be to see all of `outline` in a frame that is larger by
-// `scale`, tangents of the half angles given.
+// The distance from the target that the camera needs to see all of `outline` in a frame enlarged by
+// `scale`. tan_x, tan_y are the tangents of half the viewing angles.
 static float distance_to_see(const Outline *outline, const Axes *axes, const float target[3],
                              float tan_x, float tan_y, float scale)
 {
@@ -257,7 +260,7 @@ static float narrowest_fov(const Scene *scene)
     return glm_rad(fov);
 }
 
-// What the automatic camera shows.
+// The outline that the automatic camera frames.
 static const Outline *outline_shown(const Framing *framing, const Scene *scene)
 {
     bool hair_alone = framing->hair.any && scene->run.floor == FLOOR_NONE;

@@ -6,7 +6,7 @@
 
 static const double DEGREE = 3.14159265358979323846 / 180;
 
-// The quaternion (x, y, z, w) of a rotation vector: (sin(a/2) axis, cos(a/2)).
+// Converts a rotation vector (axis times angle) to a quaternion x, y, z, w.
 static void quaternion_from_vector(const float vector[3], double quaternion[4])
 {
     double x = (double)vector[0], y = (double)vector[1], z = (double)vector[2];
@@ -18,8 +18,8 @@ static void quaternion_from_vector(const float vector[3], double quaternion[4])
     quaternion[3] = cos(angle / 2);
 }
 
-// R v = v + 2 w (u x v) + 2 u x (u x v), with u the first three numbers of the quaternion, w the
-// last.
+// Rotates v: R v = v + 2 w (u x v) + 2 u x (u x v), where u is the vector part of the quaternion
+// and w its scalar.
 static void rotate(const double q[4], const float v[3], double rotated[3])
 {
     double x = (double)v[0], y = (double)v[1], z = (double)v[2];
@@ -29,7 +29,7 @@ static void rotate(const double q[4], const float v[3], double rotated[3])
     rotated[2] = z + 2 * (q[3] * cross[2] + q[0] * cross[1] - q[1] * cross[0]);
 }
 
-// `formulas`: three.
+// `formulas` has three elements.
 static void evaluate_formulas(const Formula *formulas, double time, double scale, float value[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -39,15 +39,15 @@ static void evaluate_formulas(const Formula *formulas, double time, double scale
     }
 }
 
-// The twist (turn about the origin, rad; velocity of the origin, m) whose motion in unit time is
-// `motion`, and back: R = exp [w], translation = V t with V the mean of the rotations on the way
-// (R. Murray, Z. Li and S. Sastry, "A Mathematical Introduction to Robotic Manipulation", 1994,
-// chapter 2).
+// The twist (rotation vector about the origin, rad; velocity of the point at the origin, m) that
+// produces a motion in unit time. R = exp [w] and translation = V t, where V is the mean of the
+// rotations during the motion (R. Murray, Z. Li and S. Sastry, "A Mathematical Introduction to
+// Robotic Manipulation", 1994, chapter 2).
 typedef struct Twist {
     Double3 turn, velocity;
 } Twist;
 
-// The factors of V = 1 + a [w] + b [w]^2 for an angle.
+// The coefficients of V = 1 + a [w] + b [w]^2 for an angle.
 static void mean_factors(double angle, double *a, double *b)
 {
     double square = angle * angle;
@@ -108,7 +108,7 @@ RigidMotion rigid_samples_evaluate(const RigidSamples *samples, double time)
     return rigid_motion_product(&way, at);
 }
 
-// The track after the samples' motion.
+// Applies the samples' motion, then the track's.
 static void add_samples(const RigidSamples *samples, double time, const double quaternion[4],
                         const double place[3], float rotation[4], float translation[3])
 {
@@ -147,7 +147,7 @@ bool rigid_track_is_still(const RigidTrack *track)
            !track->samples;
 }
 
-// `formulas`: three, or none.
+// `formulas` has three elements or none.
 static Result check_formulas(const Formula *formulas, const char *name, double time, Error *error)
 {
     for (int i = 0; i < 3 && formulas[i].text; i++) {

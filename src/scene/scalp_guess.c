@@ -7,13 +7,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double UNLIKE = 1.4;  // times a head's width: another unit, perhaps
-static const double LONGER = 1.02; // axes that need a capsule besides the sphere
+static const double UNLIKE = 1.4;  // ratio to a head's width from which another unit is likely
+static const double LONGER = 1.02; // ratio of an axis to the shortest one from which it needs a
+                                   // capsule
 
-// What scalp_fit finds of hair on the bundled head (demo, bob, fall and curls of assets/ alike).
+// The result of scalp_fit for hair on the bundled head; it is the same for demo, bob, fall and
+// curls of assets/.
 static const double HEAD_CENTRE[3] = {0, 0.0155, -0.013}, HEAD_RADIUS[3] = {0.0775, 0.0943, 0.0925};
 
-// The bundled head, its face towards +z, stretched so that its scalp is the fitted one.
+// The bundled head facing +z, scaled so that its scalp becomes the fitted ellipsoid.
 static Result make_mesh(Mesh *mesh, const ScalpFit *fit, Error *error)
 {
     TRY(stand_in_make_mesh(mesh, error));
@@ -26,8 +28,8 @@ static Result make_mesh(Mesh *mesh, const ScalpFit *fit, Error *error)
     return RESULT_OK;
 }
 
-// A ball in the end of the ellipsoid along axis k that touches it there has the radius of the
-// surface's greatest curvature, least^2 / radius[k] or more.
+// The capsule along axis k must stay inside the ellipsoid. So the radius of its ends is at most the
+// smallest radius of curvature at the tip, which is at least least^2 / radius[k].
 static Result add_capsule(Colliders *colliders, const ScalpFit *fit, int k, double least,
                           Error *error)
 {
@@ -52,7 +54,7 @@ static Result add_colliders(Colliders *colliders, const ScalpFit *fit, Error *er
     return RESULT_OK;
 }
 
-// Of the sections that are seen; the copies do not own their arrays.
+// Fits the scalp to the visible sections. The copies in `seen` do not own their arrays.
 static Result fit_sections(ScalpFit *fit, const Scene *scene, const Assets *assets, Error *error)
 {
     uint32_t count = 0;
@@ -65,7 +67,8 @@ static Result fit_sections(ScalpFit *fit, const Scene *scene, const Assets *asse
     return RESULT_OK;
 }
 
-// The unit of a head's scalp, where the file's gives another size: a named one if that is near.
+// If the scalp does not have the size of a head, suggests the unit for which it would have: a named
+// unit if one is near.
 static void suggest_unit(FILE *messages, const ScalpFit *fit, double unit)
 {
     static const struct {
@@ -107,6 +110,6 @@ Result scalp_guess(Scene *scene, Assets *assets, FILE *messages, bool verbose, E
     TRY(make_mesh(&assets->mesh, &fit, error));
     assets->has_mesh = true;
     if (!scene->run.collide_mesh) return RESULT_OK;
-    scene->run.collide_mesh = false; // shapes do it
+    scene->run.collide_mesh = false; // the shapes take over from the mesh
     return add_colliders(&scene->colliders, &fit, error);
 }

@@ -10,13 +10,15 @@
 // --- Lights.
 
 typedef struct LightSet {
-    Light lights[3]; // directions: unit vectors, x to the right, y up, z towards the camera
+    // Directions are unit vectors in the camera's frame: x right, y up, z towards the camera.
+    Light lights[3];
     uint32_t count;
-    bool turned; // they stand around the automatic camera, which does not look along -z
+    bool turned; // turned with the automatic camera if it does not look along -z
 } LightSet;
 
 static const LightSet LOOK_LIGHTS[] = {
-    // A key from above on the left, a rim from behind on the right, a fill against black shadows.
+    // A key light from above left, a rim light from behind right, and a fill light that lifts black
+    // shadows.
     [LOOK_STUDIO] =
         {{{.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1, .shadow = true},
           {.direction = {0.64f, 0.48f, -0.6f},
@@ -26,7 +28,8 @@ static const LightSet LOOK_LIGHTS[] = {
           {.direction = {0.8f, 0, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f, .shadow = true}},
          3,
          true},
-    // From above the camera's left shoulder, and a weaker one from the right against black shadows.
+    // A light over the camera's left shoulder, and a weaker one from the right that lifts black
+    // shadows.
     [LOOK_PLAIN] =
         {{{.direction = {-0.48f, 0.64f, 0.6f}, .color = {1, 1, 1}, .intensity = 1, .shadow = true},
           {.direction = {0.8f, 0, 0.6f}, .color = {1, 1, 1}, .intensity = 0.35f}},
@@ -167,15 +170,15 @@ static bool ends_with(const char *text, const char *end)
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-// A conversion that prints one int and no more: %d, or %0Nd with N from 1 to 9. Returns its length,
-// or 0 if `text`, which begins with '%', is anything else.
+// The length of a conversion for one int: %d, or %0Nd with N from 1 to 9. `text` begins with '%'.
+// Returns 0 for any other conversion.
 static size_t conversion_length(const char *text)
 {
     if (text[1] == 'd') return 2;
     return text[1] == '0' && text[2] >= '1' && text[2] <= '9' && text[3] == 'd' ? 4 : 0;
 }
 
-// In a folder's or a video's name '%' is an ordinary character.
+// In the name of a folder or a video, '%' is an ordinary character.
 static Result check_output(const char *output, Error *error)
 {
     const char *percent = strchr(output, '%');
@@ -190,8 +193,8 @@ static Result check_output(const char *output, Error *error)
         "--output '%.200s': expected one %%d or %%04d (1 to 9 digits) and no other '%%'", output);
 }
 
-// A formula that fails somewhere is reported before anything runs; of very long sequences only the
-// first million frames are checked.
+// Evaluates the formulas of the head for all frames, at most a million, so that errors are found
+// before anything runs.
 static Result check_head(const Scene *scene, Error *error)
 {
     const int most = 1000000;
@@ -203,7 +206,7 @@ static Result check_head(const Scene *scene, Error *error)
     return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
 }
 
-// The same of formulas of sections.
+// Does the same for the formulas of sections.
 static Result check_tracks(const Scene *scene, Error *error)
 {
     const int most = 1000000;
@@ -222,7 +225,8 @@ bool scene_draws_floats(const RunParams *run)
     return ends_with(run->output, ".pfm") || ends_with(run->output, ".exr");
 }
 
-// Light as it is, and what is no light, cannot be toned.
+// Checks that options for tone mapping and levels are not combined with output that has linear
+// light or data instead of colours.
 static Result check_depth(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
@@ -267,15 +271,15 @@ Result scene_check(const Scene *scene, Error *error)
     return check_tracks(scene, error);
 }
 
-// --- Defaults that give way.
+// --- Defaults that give way to other values.
 
-// Who said the parameter.
+// How the parameter got its value.
 static Origin origin_of(const Section *section, const char *name)
 {
     return (Origin)section->origin[params_find(name) - PARAM_TABLE];
 }
 
-// What another parameter has replaced: its value, and how it changes.
+// Resets a parameter, with its track, that another one replaces.
 static void drop_transmission(Section *section)
 {
     section->params.transmission = (AutoVec3){.automatic = true};
@@ -308,7 +312,7 @@ void scene_settle_colors(Scene *scene)
 
 // --- Presets.
 
-// The table of parameters has the defaults of the studio and of normal quality.
+// The defaults in params.def are those of the studio look and of normal quality.
 static const struct {
     const char *preset, *word, *name, *value;
 } PRESETS[] = {
@@ -366,7 +370,7 @@ Result scene_apply_presets(const Presets *presets, ParamScope scope, void *param
     return apply_preset("quality", presets->quality, scope, params, error);
 }
 
-// A row of PRESETS in the run or in a section, where nothing else has set it.
+// Applies a row of PRESETS to the run or the sections, unless the parameter was set otherwise.
 static Result apply_row(Scene *scene, const char *name, const char *value, Error *error)
 {
     const ParamInfo *info = params_find(name);
@@ -380,7 +384,7 @@ static Result apply_row(Scene *scene, const char *name, const char *value, Error
     return RESULT_OK;
 }
 
-// Whether a preset's row says nothing of a scene file, which itself says what there is.
+// Whether the row does not apply to scene files, which state themselves what the scene contains.
 static bool is_for_files(const Scene *scene, size_t i)
 {
     return scene->file && strcmp(PRESETS[i].name, "scalp") == 0;

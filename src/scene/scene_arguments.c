@@ -12,9 +12,9 @@ static const ParamInfo *info_of(const OptionsArgument *argument)
     return &PARAM_TABLE[argument->option - OPTIONS_OF_PARAMS];
 }
 
-// What the first walk along the command line finds.
+// What the first pass over the command line finds.
 typedef struct Found {
-    const char **files; // [file_count] owned; names of hair files or of the scene file
+    const char **files; // [file_count] owned; hair files or one scene file
     size_t file_count;
     SceneOverrides overrides;
 } Found;
@@ -26,7 +26,7 @@ static void note(SceneOverrides *overrides, const char *name, const char *text)
     if (strcmp(name, "algo") == 0) overrides->algo = text;
 }
 
-// Finds unknown flags, requests and the files.
+// Collects the files; reports unknown flags and handles requests such as --help.
 static Result find_files(Scene *scene, OptionsWalk walk, Found *found, Error *error)
 {
     OptionsArgument argument;
@@ -56,7 +56,7 @@ static Result apply_flag(Scene *scene, const OptionsArgument *argument, Error *e
     return result == RESULT_OK ? result : error_prefix(error, result, "%s: ", argument->flag);
 }
 
-// The second walk, once the sections are there.
+// The second pass, when the sections exist.
 static Result apply_flags(Scene *scene, OptionsWalk walk, Error *error)
 {
     for (OptionsArgument argument;;) {
@@ -66,8 +66,8 @@ static Result apply_flags(Scene *scene, OptionsWalk walk, Error *error)
     }
 }
 
-// One name without a number (x.png) holds one frame, --first, unless the command line says how many
-// frames there are or something else than images needs all of them.
+// A name without a number (x.png) means one frame, --first, unless the command line gives a number
+// of frames or another output needs all of them.
 static Result choose_still(Scene *scene, Error *error)
 {
     RunParams *run = &scene->run;
@@ -77,7 +77,7 @@ static Result choose_still(Scene *scene, Error *error)
     if (counted || sheet || run->part[1] > 1 || !scene_has_default(scene, "last") || *run->cache ||
         *run->export)
         return RESULT_OK;
-    Error unused = {{0}}; // a wrong name is reported by what opens it
+    Error unused = {{0}}; // whoever opens the file reports a wrong name
     Result result = target_parse(&target, run->output, &unused);
     if (result == RESULT_FAILED) return error_set(error, result, "%s", unused.text);
     if (result == RESULT_OK && target.kind == TARGET_STILL) run->last = run->first;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A member of the file that is no parameter.
+// A member of the file that is not a parameter.
 typedef struct Part {
     const char *key;
     Result (*read)(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
@@ -25,11 +25,11 @@ static const Part PARTS[] = {{"head", scene_tracks_read_head},
                              {"colliders", read_colliders}};
 enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 
-// For editors: the path or address of the file's JSON schema, ignored here.
+// Path or address of the file's JSON schema, for editors; ignored here.
 static const char SCHEMA_KEY[] = "$schema";
 
-// The file being read. `root` is its place, `folder` what stands before the last '/' in its path
-// and that '/', or "".
+// The file being read. `root` is its place; `folder` is the part of its path up to and including
+// the last '/', or "".
 typedef struct Document {
     JsonPlace root;
     const char *folder;
@@ -37,8 +37,8 @@ typedef struct Document {
     const SceneOverrides *overrides;
 } Document;
 
-// The names of all keys that an object of the file may have, ended by NULL; the caller frees the
-// array. The top level may have parameters of either scope, sections only their own.
+// The keys that an object of the file may have, terminated by NULL; the caller frees the array. The
+// top level may have parameters of both scopes, sections only their own.
 static const char **list_keys(bool top)
 {
     const char **names = calloc(2 * PARAM_COUNT + PART_COUNT + 3, sizeof names[0]);
@@ -71,22 +71,22 @@ static Result check_keys(bool top, const JsonPlace *place, const json_t *object,
     return result;
 }
 
-// Parameters that may have keyframes.
+// Whether the parameter may have keyframes.
 static bool is_force(const char *name)
 {
     return strcmp(name, "gravity") == 0 || strcmp(name, "wind") == 0;
 }
 
-// Where parameters of one scope go, and the Origin of each row.
+// The destination of parameters of one scope, and the Origin of each.
 typedef struct Sink {
     ParamScope scope;
     void *params;
     uint8_t *origin;       // [SCENE_PARAMS]
-    SectionTracks *tracks; // of a section; NULL: the run's
+    SectionTracks *tracks; // of a section; NULL for the run
 } Sink;
 
-// The parameters of one scope among the members of `object`. Keyframes of forces and the list of
-// colliders are for the caller.
+// Reads the parameters of one scope from the members of `object`. The caller reads keyframes of
+// forces and the list of colliders.
 static Result read_params(const Document *document, const Sink *sink, Origin origin,
                           const JsonPlace *parent, const json_t *object, Error *error)
 {
@@ -138,7 +138,8 @@ static Result read_section(Scene *scene, const Document *document, const Section
     return read_params(document, &sink, ORIGIN_KEY, place, object, error);
 }
 
-// Whether the parameter is of the section's solver, or of the one that the command line puts there.
+// Whether the parameter belongs to the section's solver or to the solver that the command line
+// selects.
 static bool is_owned(const ParamInfo *info, const Section *section, const char *asked)
 {
     return params_owned_by(info, section->params.algo) || (asked && params_owned_by(info, asked));
@@ -168,8 +169,8 @@ static Result check_owner(const Scene *scene, const Document *document, size_t r
     return RESULT_USAGE;
 }
 
-// The word that the command line gives, or else the file; NULL: neither, or no word of the
-// parameter, which is reported when the file's value is read.
+// The preset that the command line gives, or else the file. NULL if neither does, or if the file's
+// word is invalid, which is reported when its value is read.
 static const char *find_word(const Document *document, const char *name, const char *asked)
 {
     RunParams unused = {0};
@@ -186,7 +187,7 @@ static Presets find_presets(const Document *document)
                      find_word(document, "quality", asked->quality)};
 }
 
-// Section parameters at the top level are the defaults of every section.
+// Section parameters at the top level are defaults for all sections.
 static Result read_sections(Scene *scene, const Document *document, Error *error)
 {
     const json_t *array = json_object_get(document->json, "sections");
@@ -214,7 +215,7 @@ static Result read_sections(Scene *scene, const Document *document, Error *error
     return result;
 }
 
-// A force given as an object: keyframes. `name` is gravity or wind.
+// Reads keyframes if the force `name` (gravity or wind) is an object.
 static Result read_force(Keyframes *keys, const char *name, const Document *document, Error *error)
 {
     const json_t *value = json_object_get(document->json, name);
@@ -271,7 +272,7 @@ static Result parse(Scene *scene, const char *name, const json_t *json, const ch
     scene->file = strdup(name);
     Result result = scene->file ? read_document(scene, &document, error)
                                 : error_set(error, RESULT_FAILED, "out of memory");
-    // A scene file says what there is.
+    // A scene file without a scalp means none.
     if (scene->origin[params_find("scalp") - PARAM_TABLE] == ORIGIN_DEFAULT)
         scene->run.scalp = SCALP_NONE;
     return result;

@@ -9,11 +9,11 @@
 
 enum { TEXT_SIZE = 512, NUMBERS_MAX = 3 };
 
-// Which JSON types may stand for a kind's value.
+// The JSON types that a kind's value may have.
 typedef struct Form {
     bool boolean, number, string;
-    size_t numbers; // in an array; 0: no array
-    bool points;    // an array of [place, value]
+    size_t numbers; // length of an array of numbers; 0 if no array is allowed
+    bool points;    // an array of points [place, value]
 } Form;
 
 static const Form FORMS[] = {
@@ -38,7 +38,7 @@ static const Form FORMS[] = {
     [PARAM_PATH] = {.string = true},
 };
 
-// The number as a flag's value would have it. Returns its length.
+// Writes the number like the value of a flag. Returns its length.
 static int number_to_text(const json_t *value, char *text, size_t size)
 {
     if (json_is_integer(value))
@@ -46,7 +46,7 @@ static int number_to_text(const json_t *value, char *text, size_t size)
     return snprintf(text, size, "%.17g", json_real_value(value));
 }
 
-// An array of numbers as a flag's value would have it; false if it is anything else.
+// Writes an array of numbers like the value of a flag; false if the value is anything else.
 static bool array_to_text(const json_t *value, size_t count, char separator, char text[TEXT_SIZE])
 {
     if (!json_is_array(value) || json_array_size(value) != count || count > NUMBERS_MAX)
@@ -61,7 +61,7 @@ static bool array_to_text(const json_t *value, size_t count, char separator, cha
     return true;
 }
 
-// An array of points [place, value] as a flag's value would have it: value@place:value@place.
+// Writes an array of points [place, value] like the value of a flag: value@place:value@place.
 static bool points_to_text(const json_t *value, char text[TEXT_SIZE])
 {
     size_t count = json_array_size(value);
@@ -80,8 +80,8 @@ static bool points_to_text(const json_t *value, char text[TEXT_SIZE])
     return true;
 }
 
-// The value in the form that a flag's value has, in `buffer` or where it stands; NULL if its type
-// is wrong for the kind.
+// The value as the text of a flag, in `buffer` or in the JSON value itself; NULL if its type is
+// wrong for the kind.
 static const char *value_to_text(ParamKind kind, const json_t *value, char buffer[TEXT_SIZE])
 {
     const Form *form = &FORMS[kind];
@@ -96,7 +96,7 @@ static const char *value_to_text(ParamKind kind, const json_t *value, char buffe
     return form->numbers && array_to_text(value, form->numbers, separator, buffer) ? buffer : NULL;
 }
 
-// As params_describe has it, where JSON differs from a flag's value.
+// Like params_describe, but for JSON.
 static void describe_value(const ParamInfo *info, char *text, size_t size)
 {
     char flag[160];
@@ -220,7 +220,7 @@ json_t *scene_param_write(const ParamInfo *info, const void *params)
         return vector->automatic ? json_string("auto") : scene_param_write_floats(vector->value, 3);
     case PARAM_SIZE:
         return json_pack("[i, i]", size[0], size[1]);
-    // As flags have them; a color of no whole levels is "r,g,b".
+    // These are written like flags; a color without whole levels becomes "r,g,b".
     case PARAM_PART:
     case PARAM_COLOR:
     case PARAM_AUTO_COLOR:

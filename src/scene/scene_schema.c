@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// jansson's functions take NULL for a value and then fail, so that memory running out is found
-// where a value is put into its parent: json_pack gives NULL, put() tells.
+// jansson's functions accept NULL for a value and then fail. So a failed allocation needs to be
+// checked only where a value is put into its parent: json_pack returns NULL, put() clears its flag.
 #include "scene/scene_schema.h"
 
 #include "base/colors.h"
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What a flag's value may be: numbers as text, with blanks around them.
+// Patterns of a flag's value: numbers as text, with optional blanks.
 #define BLANKS      "[ \\t]*"
 #define WHOLE_TEXT  BLANKS "[+-]?[0-9]+" BLANKS
 #define NUMBER_TEXT BLANKS "[+-]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?" BLANKS
@@ -22,7 +22,7 @@
 
 enum { TEXT_SIZE = 1200, PATTERN_SIZE = 4000 };
 
-// Puts `value` under `key` and takes its reference; clears *good if either is NULL.
+// Puts `value` under `key` and takes over its reference. Clears *good if either is NULL.
 static void put(json_t *object, const char *key, json_t *value, bool *good)
 {
     *good = json_object_set_new(object, key, value) == 0 && *good;
@@ -33,7 +33,7 @@ static void append(json_t *array, json_t *value, bool *good)
     *good = json_array_append_new(array, value) == 0 && *good;
 }
 
-// Gives `json` back if all went well, else frees it.
+// Returns `json` if all went well, otherwise frees it.
 static json_t *finish(json_t *json, bool good)
 {
     if (json && good) return json;
@@ -70,14 +70,14 @@ static json_t *whole(double minimum, double maximum)
                      "maximum", (json_int_t)maximum);
 }
 
-// An array of exactly `count` values like `item`.
+// The schema of an array of exactly `count` values like `item`.
 static json_t *vector(json_t *item, int count)
 {
     return json_pack("{s:s, s:o, s:i, s:i}", "type", "array", "items", item, "minItems", count,
                      "maxItems", count);
 }
 
-// What one of two or three is.
+// The schema of a value that matches one of two or three schemas.
 static json_t *either(json_t *a, json_t *b)
 {
     return json_pack("{s:[o, o]}", "anyOf", a, b);
@@ -95,7 +95,7 @@ static json_t *automatic(void)
 
 // --- Parameters.
 
-// "([Rr][Ee][Dd]|...)": names of colors, in which case does not count.
+// "([Rr][Ee][Dd]|...)": the names of colors, case-insensitive.
 static json_t *color_text(void)
 {
     char text[PATTERN_SIZE] = "(#[0-9a-fA-F]{6}|" THREE_TEXT;
@@ -118,13 +118,13 @@ static json_t *color_names(void)
     return words(names);
 }
 
-// Names first, for editors that offer them.
+// The names come first, because editors offer the first alternative.
 static json_t *color(void)
 {
     return json_pack("{s:[o, o, o]}", "anyOf", color_names(), color_text(), vector(real(0, 1), 3));
 }
 
-// Points along the strand, [place, number].
+// The schema of points along the strand, [place, number].
 static json_t *points(double minimum, double maximum)
 {
     json_t *point = json_pack("{s:s, s:[o, o], s:b, s:i}", "type", "array", "items", real(0, 1),
@@ -150,7 +150,7 @@ static json_t *text(const ParamInfo *info, const SchemaSolver *solvers)
     return json_pack("{s:o}", "enum", finish(array, good));
 }
 
-// What the parameter's value may be.
+// The schema of the parameter's value.
 static json_t *value_of(const ParamInfo *info, const SchemaSolver *solvers)
 {
     double least = info->minimum, most = info->maximum;
@@ -201,8 +201,8 @@ static json_t *closed(json_t *properties)
                      "additionalProperties", 0);
 }
 
-// An object with "keys", an array of {"time": s, ...members}, "interpolation", and `others`, which
-// may be NULL.
+// The schema of an object with "keys", an array of {"time": s, ...members}, "interpolation" and
+// `others`, which may be NULL.
 static json_t *track(json_t *members, json_t *others)
 {
     bool good = members;
@@ -219,7 +219,7 @@ static json_t *track(json_t *members, json_t *others)
     return finish(closed(properties), good);
 }
 
-// A number or color of a section that changes over time.
+// The schema of a track for a section's number or color.
 static json_t *number_track(const ParamInfo *info)
 {
     bool color = section_tracks_is_color(info), good = true;
@@ -236,7 +236,7 @@ static json_t *number_track(const ParamInfo *info)
     return finish(result, good);
 }
 
-// The help, the unit and the solvers that have it.
+// The help text, the unit and the solvers that have the parameter.
 static json_t *description_of(const ParamInfo *info)
 {
     char line[TEXT_SIZE];
@@ -248,12 +248,12 @@ static json_t *description_of(const ParamInfo *info)
     return json_string(line);
 }
 
-// `defaults`: the struct of the parameter's scope.
+// The schema of a parameter. `defaults` is the struct of the parameter's scope.
 static json_t *parameter(const ParamInfo *info, const SchemaSolver *solvers, const void *defaults)
 {
     json_t *value = value_of(info, solvers);
     bool good = value;
-    if (json_object_get(value, "$ref")) // what stands beside a reference does not count
+    if (json_object_get(value, "$ref")) // keywords beside $ref are ignored
         value = json_pack("{s:[o]}", "allOf", value);
     bool moves = strcmp(info->name, "gravity") == 0 || strcmp(info->name, "wind") == 0;
     if (moves) value = either(value, reference("forceTrack"));
@@ -265,7 +265,7 @@ static json_t *parameter(const ParamInfo *info, const SchemaSolver *solvers, con
 
 static bool is_key(const ParamInfo *info)
 {
-    return strcmp(info->name, "colliders") != 0; // a part of its own
+    return strcmp(info->name, "colliders") != 0; // colliders have a schema of their own
 }
 
 // --- Tracks and lights.
@@ -298,7 +298,7 @@ static json_t *camera_track(void)
     return finish(result, good);
 }
 
-// Keys, or formulas of time.
+// The schema of the head's track: keys, or formulas of time.
 static json_t *head_track(void)
 {
     json_t *formulas = vector(json_pack("{s:[s, s]}", "type", "number", "string"), 3);
@@ -314,7 +314,7 @@ static json_t *head_track(void)
     return finish(result, good);
 }
 
-// One kind of light: what stands for all, and with a place or a direction or both.
+// The schema of one kind of light: the common members, and position or direction or both.
 static json_t *light(LightKind kind)
 {
     json_t *properties = json_object(), *needed = json_array();
@@ -348,7 +348,7 @@ static json_t *lights(void)
     for (LightKind kind = LIGHT_DIRECTIONAL; LIGHT_KIND_WORDS[kind]; ++kind) {
         json_t *when =
             json_pack("{s:{s:{s:s}}}", "properties", "type", "const", LIGHT_KIND_WORDS[kind]);
-        if (kind != LIGHT_DIRECTIONAL) // which it is without a type
+        if (kind != LIGHT_DIRECTIONAL) // the default if "type" is missing
             put(when, "required", json_pack("[s]", "type"), &good);
         append(kinds, json_pack("{s:o, s:o}", "if", when, "then", light(kind)), &good);
     }
@@ -360,7 +360,7 @@ static json_t *lights(void)
 
 // --- Colliders.
 
-// The numbers of a shape: "x,y,z,radius".
+// The schema of a shape's numbers, "x,y,z,radius".
 static json_t *shape_numbers(const char *names)
 {
     json_t *items = json_array();
@@ -407,9 +407,10 @@ static json_t *colliders(void)
         json_pack("{s:s}", "type", "string"));
 }
 
-// --- The whole.
+// --- The whole schema.
 
-// What holds in a section of this solver: its variants, and none of the others' parameters.
+// The rule for a section with this solver: it has the solver's variants and no parameters of other
+// solvers.
 static json_t *rule_of(const SchemaSolver *solver)
 {
     json_t *properties = json_object();
@@ -425,7 +426,7 @@ static json_t *rule_of(const SchemaSolver *solver)
                      finish(properties, good));
 }
 
-// By all its names.
+// Adds the parameter under all its names.
 static void put_param(json_t *properties, const ParamInfo *info, bool *good)
 {
     put(properties, info->name, reference(info->name), good);
@@ -449,7 +450,7 @@ static json_t *section(const SchemaSolver *solvers)
     return finish(object, good);
 }
 
-// What the help says of this key, or "".
+// The help text of this key, or "".
 static json_t *explain(const char *const (*keys)[3], const char *name)
 {
     char line[TEXT_SIZE] = "";

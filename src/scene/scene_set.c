@@ -5,7 +5,7 @@
 
 enum { TURN_SECONDS = 6, TURN_FPS = 30 };
 
-// A value given as a flag also replaces the scene file's keyframes of that name.
+// A flag also replaces the keyframes that the scene file gives for the parameter.
 static void drop_keyframes(Scene *scene, const char *name)
 {
     const struct {
@@ -21,7 +21,7 @@ static void drop_keyframes(Scene *scene, const char *name)
     }
 }
 
-// What is refused changes nothing.
+// Sets a parameter of the run. An invalid value changes nothing.
 static Result set_run(Scene *scene, const ParamInfo *info, const char *text, Error *error)
 {
     bool shapes = strcmp(info->name, "colliders") == 0;

@@ -16,14 +16,14 @@ const double DEGREE = 3.14159265358979323846 / 180.0;
 
 enum { MEMBERS_MAX = 3 };
 
-// A member that the keys of a track may have, and where its values go.
+// A member that the keys of a track may have, and where its values are stored.
 typedef struct Member {
     const char *name;
     Keyframes *keys;
     uint32_t width;
-    double minimum, maximum; // as the file has them
+    double minimum, maximum; // in the unit of the file
     double scale;            // from the file's unit to the struct's
-    bool color;              // also a text
+    bool color;              // may also be the text of a color
 } Member;
 
 static Result read_member(const Member *member, const JsonPlace *parent, const json_t *value,
@@ -48,8 +48,8 @@ static Result read_member(const Member *member, const JsonPlace *parent, const j
     return keyframes_append(member->keys, time, numbers, member->width, error);
 }
 
-// One key: its time, later than `*time`, which it replaces, and at least one member. A member that
-// a key leaves out runs on between the keys that have it.
+// Reads one key: its time, which must be later than `*time` and replaces it, and at least one
+// member. A member missing from a key is interpolated between the keys that have it.
 static Result read_key(const Member *members, size_t count, const JsonPlace *place,
                        const json_t *key, double *time, Error *error)
 {
@@ -87,7 +87,7 @@ static Result read_interpolation(const JsonPlace *parent, const json_t *track, I
     return result;
 }
 
-// "keys" and "interpolation" of a track; other members of `track` are left to the caller.
+// Reads "keys" and "interpolation" of a track. The caller reads the other members.
 static Result read_track(const Member *members, size_t count, const JsonPlace *place,
                          const json_t *track, Error *error)
 {
@@ -125,7 +125,7 @@ Result scene_tracks_read_numbers(Keyframes *keys, const ParamInfo *info, bool co
     return read_track(&member, 1, place, value, error);
 }
 
-// A point or a direction; keeps what is there if it is left out.
+// Reads a point or a direction; keeps the present value if the member is missing.
 static Result read_vector(float to[3], const JsonPlace *parent, const json_t *object,
                           const char *key, bool needed, Error *error)
 {
@@ -137,7 +137,7 @@ static Result read_vector(float to[3], const JsonPlace *parent, const json_t *ob
                             "an array of three numbers", to, error);
 }
 
-// Three formulas of time; a number stands for itself.
+// Reads three formulas of time; a number is a constant formula.
 static Result read_formulas(Formula formulas[3], const char *name, const Keyframes *keys,
                             const JsonPlace *parent, const json_t *object, Error *error)
 {
@@ -202,7 +202,8 @@ Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json
     return read_track(members, 3, place, value, error);
 }
 
-// A unit vector: against the way that a directional light travels, along that of a spot.
+// Reads a unit vector: for a directional light against the direction of travel, for a spot along
+// it.
 static Result read_direction(Light *light, const JsonPlace *parent, const json_t *object,
                              Error *error)
 {
@@ -212,15 +213,15 @@ static Result read_direction(Light *light, const JsonPlace *parent, const json_t
     JsonPlace place = {.parent = parent, .key = "direction"};
     if (length == 0)
         return json_refuse(&place, json_object_get(object, "direction"), "a direction", error);
-    // A unit vector whose numbers are rounded to float is at most so much longer or shorter: it
-    // stays as it is, so that a scene that is written and read again keeps it.
+    // A unit vector rounded to float may have this error in its length. It is not normalised again,
+    // so that writing and reading a scene does not change it.
     if (fabs(length - 1) <= 0x1p-24) length = 1;
     double sign = light->kind == LIGHT_SPOT ? 1 : -1;
     for (int i = 0; i < 3; i++) light->direction[i] = (float)(sign * (double)way[i] / length + 0.0);
     return RESULT_OK;
 }
 
-// A color as the parameter `color` takes it, made linear.
+// Reads a color like that of the parameter `color` and makes it linear.
 static Result read_light_color(Light *light, const JsonPlace *parent, const json_t *object,
                                Error *error)
 {
@@ -233,7 +234,7 @@ static Result read_light_color(Light *light, const JsonPlace *parent, const json
     return result;
 }
 
-// A number that may be left out.
+// Reads an optional number.
 static Result read_quantity(float *quantity, const JsonPlace *parent, const json_t *object,
                             const char *key, double minimum, double maximum, const char *expected,
                             Error *error)
@@ -268,7 +269,7 @@ static Result read_light_shadow(Light *light, const JsonPlace *parent, const jso
     return RESULT_OK;
 }
 
-// `light` has its defaults.
+// `light` must hold the defaults.
 static Result read_light(Light *light, const JsonPlace *place, const json_t *value, Error *error)
 {
     static const char *const DIRECTIONAL[] = {"type",      "direction", "color",

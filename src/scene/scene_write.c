@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene as JSON. jansson's functions take NULL for a value and then fail, so that memory running
-// out is found once, where the value is put into its parent.
+// Writes a scene as JSON. jansson's functions accept NULL for a value and then fail. So a failed
+// allocation needs to be checked only where a value is put into its parent.
 #include "scene/scene_param.h"
 #include "scene/scene_tracks.h"
 #include "scene/section_keys.h"
@@ -10,13 +10,14 @@
 #include <math.h>
 #include <string.h>
 
-// Puts `value` into `object` and takes its reference; false if either is NULL or memory is short.
+// Puts `value` into `object` and takes over its reference. False if either is NULL or memory is
+// short.
 static bool put(json_t *object, const char *key, json_t *value)
 {
     return json_object_set_new(object, key, value) == 0;
 }
 
-// Gives `json` back if all went well, else frees it.
+// Returns `json` if all went well, otherwise frees it.
 static json_t *finish(json_t *json, bool good)
 {
     if (json && good) return json;
@@ -33,7 +34,7 @@ static json_t *write_value(const Keyframes *keys, uint32_t key, double scale)
                             : scene_param_write_floats(scaled, keys->width);
 }
 
-// A track that goes under `name` into keys, in the unit of the file.
+// A track that becomes the member `name` of keys, in the unit of the file.
 typedef struct Track {
     const char *name;
     const Keyframes *keys;
@@ -41,7 +42,7 @@ typedef struct Track {
     uint32_t next; // the first key not yet written
 } Track;
 
-// The earliest time of the keys not yet written; infinity if there is none.
+// The earliest time of the keys that are not yet written; infinity if there are none.
 static double next_time(const Track *tracks, size_t count)
 {
     double time = INFINITY;
@@ -52,8 +53,8 @@ static double next_time(const Track *tracks, size_t count)
     return time;
 }
 
-// {"keys": [...], "interpolation": ...} with each time once. NULL if no track has keys or memory is
-// short.
+// {"keys": [...], "interpolation": ...} with each time once. NULL if no track has keys or if memory
+// is short.
 static json_t *write_tracks(Track *tracks, size_t count)
 {
     json_t *array = json_array(), *object = json_object();
@@ -91,14 +92,14 @@ static bool write_camera(json_t *object, const Scene *scene)
                       {.name = "fov", .keys = &scene->fov, .scale = 1.0}};
     if (isinf(next_time(tracks, 3))) return true;
     bool good = put(object, "camera", write_tracks(tracks, 3));
-    // A scene file has either.
+    // A scene file has either the constant or the keyframes.
     for (size_t i = 0; i < 3; i++) {
         if (tracks[i].keys->count > 0) json_object_del(object, tracks[i].name);
     }
     return good;
 }
 
-// `formulas`: three.
+// `formulas` has three elements.
 static json_t *write_formulas(const Formula *formulas)
 {
     json_t *array = json_array();
@@ -160,13 +161,13 @@ static bool write_lights(json_t *object, const Scene *scene)
     return put(object, "lights", array) && good;
 }
 
-// A permission, which only a command line can give.
+// Whether the parameter is a permission, which only the command line can give.
 static bool is_permission(const ParamInfo *info)
 {
     return strcmp(info->name, "allow_paths") == 0;
 }
 
-// `algo`: of the section, whose parameters are written, those with tracks as these.
+// Writes the parameters of a scope, those with tracks as tracks. `algo` is the section's solver.
 static bool write_params(json_t *object, ParamScope scope, const void *params, const char *algo,
                          const SectionTracks *tracks)
 {

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-// Rates and speeds are float32 values, so that quotients such as that of 119.88 and 23.976 are off
-// by 1e-7. What is meant to be whole is taken as whole.
+// Rates and speeds are float32 values, so quotients such as 119.88 / 23.976 are off by 1e-7.
+// Numbers this close to an integer are rounded.
 static const double WHOLE = 1e-6;
 
 static double nearly_whole(double number)

@@ -20,7 +20,7 @@ void section_tracks_destroy(SectionTracks *tracks)
     *tracks = (SectionTracks){0};
 }
 
-// --- What may change.
+// --- Which parameters may change.
 
 static bool lists(const char *names, const char *name)
 {
@@ -127,7 +127,7 @@ void section_tracks_greatest(const SectionTracks *tracks, double last, int count
         uint32_t width = width_of(track->info);
         int times = track->keys.count ? (int)track->keys.count : count;
         for (int t = 0; t < times; ++t) {
-            // Between its keys no number of a track overshoots.
+            // The keys are enough, because tracks do not overshoot between keys.
             double time = track->keys.count ? track->keys.time[t] : last * t / fmax(count - 1, 1);
             evaluate(track, time, value);
             for (uint32_t k = 0; k < width; ++k) most[k] = fmaxf(most[k], value[k]);
