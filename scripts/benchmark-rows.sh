@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=sh disable=SC2016,SC2154 # sourced; awk programs
-# Reads rows of tractrix-bench with awk, columns by name; for benchmark-tables and benchmark-words.
-# With `rows` the folder of NAME.csv: defines rows_of NAME PROGRAM.
+# Reads rows of tractrix-bench with awk; columns are accessed by name. For benchmark-tables and benchmark-words. `rows`
+# must be the folder of NAME.csv. Defines rows_of NAME PROGRAM.
 
-export LC_ALL=C # the order of equal figures
+export LC_ALL=C # a fixed order of equal figures
 
-# c["algo"] is the number of that column; a scenario's commas are semicolons in CSV.
+# c["algo"] is the number of this column. Commas in a scenario are semicolons in the CSV file.
 awk_functions='
     function digits(x) { return x == "" ? "-" : sprintf(x < 0.001 ? "%.2g" : x < 0.1 ? "%.4f" : x < 100 ? "%.3g" : "%.0f", x) }
     function percent(x) { return sprintf(x < 0.00095 ? "%.1g %%" : x < 0.095 ? "%.2g %%" : "%.0f %%", 100 * x) }
@@ -22,7 +22,7 @@ awk_functions='
         return at ? substr(words, 1, at - 1) " and " substr(words, at + 2) : words
     }
     function range(low, high) { low = sprintf("%.2g", low); high = sprintf("%.2g", high); return low == high ? low : low " to " high }
-    function short(path) { path = base(path); sub(/\..*/, "", path); return path } # a set by the name of its file
+    function short(path) { path = base(path); sub(/\..*/, "", path); return path } # the name of a set from the name of its file
     function base(path) { sub(/.*\//, "", path); return path }
 '
 
@@ -31,7 +31,7 @@ rows_of() {
     awk -F, "$awk_functions"' FNR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } '"$2" "$rows/$1.csv"
 }
 
-# "Measured on DAY at commit C: CPU, RENDERER": a sentence about the rows of FILE.csv.
+# Prints "Measured on DAY at commit C: CPU, RENDERER", a sentence about the rows of FILE.csv.
 measured() {
     day=$(date -u -r "$rows/$1.csv" +%Y-%m-%d)
     rows_of "$1" 'FNR == 2 {

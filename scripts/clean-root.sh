@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=sh
-# A minimal Debian of its own, for scripts that try packages and archives as a fresh machine has them. They source this with
-# `name` set, and get $work, a folder that goes when they end, and $root, where root_make has put the system.
+# Makes a minimal Debian in a folder, for scripts that test packages and archives on a fresh system. A script sources
+# this file with `name` set. It gets $work, a folder that is removed at the end, and $root, where root_make puts the
+# system.
 fail() {
     echo "${name:?}: $*" >&2
     exit 1
@@ -10,7 +11,7 @@ command -v mmdebstrap >/dev/null || fail "no mmdebstrap here: scripts/setup deb 
 [ "$(id -u)" = 0 ] || fail "not root: expected to be, for a root of its own"
 work=$(mktemp -d)
 root=$work/root
-# A mount that stays would take what it shows with it.
+# Unmounts first: removing a folder with a mount in it would remove the mounted files.
 root_tidy() {
     for folder in proc dev; do
         ! mountpoint -q "$root/$folder" || umount "$root/$folder"
@@ -20,7 +21,8 @@ root_tidy() {
 trap root_tidy EXIT
 trap 'exit 130' INT TERM HUP
 
-# root_make SUITE PACKAGES: with these packages and what they depend on. Ubuntu's suites come from Ubuntu's archive.
+# root_make SUITE PACKAGES: makes a system with these packages and their dependencies. Ubuntu's suites come from
+# Ubuntu's archive.
 root_make() {
     echo "$name: a root with $1"
     case $1 in
@@ -35,10 +37,10 @@ root_make() {
     logged "dependencies" in_root apt-get -qq satisfy -y --no-install-recommends "$root_packages"
     install -d -o 1000 -g 1000 "$root/tmp/user"
 }
-# in_root COMMAND...: as root; as_user COMMAND...: as an ordinary user with nothing in the environment.
+# in_root COMMAND...: runs as root. as_user COMMAND...: runs as an ordinary user with an empty environment.
 in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C DEBIAN_FRONTEND=noninteractive "$@"; }
 as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/tmp/user TMPDIR=/tmp/user "$@"; }
-# logged WHAT COMMAND...: fails with what the command said.
+# logged WHAT COMMAND...: if the command fails, fails with its output.
 logged() {
     what=$1
     shift

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# report.json of tractrix-compare as Markdown, for comments: a heading, and a table of the images that need a look. The report may come
-# from a stranger: only names of plain letters, known outcomes and numbers are taken from it.
-# --arg sheets PREFIX: where the sheets are, as links ("": none); --argjson pictures NAMES: those that have a picture at PREFIX
+# Converts report.json of tractrix-compare to Markdown, for comments: a heading, and a table of the images that need a
+# look. The report may come from a stranger, so only plain names, known outcomes and numbers are taken from it.
+# --arg sheets PREFIX: prefix of links to the sheets ("": no links); --argjson pictures NAMES: those that have a picture
+# at PREFIX
 def number: if type == "number" then (. * 10000 | round) / 10000 | tostring else "" end;
 def known: . as $outcome | ["same", "different", "size mismatch", "new", "missing", "unrendered", "unreadable", "failed"] | index($outcome) != null;
 def level: if . == "platform" or . == "class" or . == "common" then " (\(.))" else "" end;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=sh
-# Shared by the programs that are scripts (farm, turntable, compare-goldens), into which the build copies it: finds the
-# programs and runs them as steps. A step is a session of its own. INT, TERM and HUP to the script end all processes of the
-# running step at once, whatever groups they have made, and then the script, with status 130.
+# Shared by the programs that are scripts (farm, turntable, compare-goldens); the build copies it into them. Finds the
+# programs and runs them as steps. A step is a separate session. If the script receives INT, TERM or HUP, it ends all
+# processes of the running step, whatever process groups they have made, and then itself with status 130.
 me=${0##*/} running='' at_end=:
 
 # fail STATUS MESSAGE
@@ -13,7 +13,7 @@ fail() {
     exit "$status"
 }
 
-# find_program NAME: in TRACTRIX_BIN and nowhere else if that is set.
+# find_program NAME: if TRACTRIX_BIN is set, looks only there.
 find_program() {
     here=$(dirname "$0")
     for folder in "${TRACTRIX_BIN:-$here}" "${TRACTRIX_BIN:-$here/../out/release}"; do
@@ -23,7 +23,7 @@ find_program() {
     command -v "$1" || fail 1 "no $1: expected it beside this program, in PATH or in TRACTRIX_BIN"
 }
 
-# step COMMAND...: runs it and returns its status.
+# step COMMAND...: runs the command and returns its status.
 step() {
     running=yes
     setsid "$@" </dev/null &
@@ -33,8 +33,8 @@ step() {
     return "$step_status"
 }
 
-# processes_of SESSION: their numbers. Behind the name in a stat file, which may hold anything, stand state, parent, group
-# and session. Z: it has ended.
+# processes_of SESSION: the numbers of its processes. In a stat file the name may contain anything; after it come state,
+# parent, group and session. State Z: the process has ended.
 processes_of() {
     for stat in /proc/[0-9]*/stat; do
         { read -r line <"$stat"; } 2>/dev/null || continue
@@ -45,8 +45,9 @@ processes_of() {
     done
 }
 
-# Asks each process once, since many take a second signal as an order to leave everything; goes on while new ones appear,
-# and after 20 s asks no more. $! is the step's first process, also when the signal came before the shell could note it.
+# Signals each process once, because many take a second signal as an order to abandon everything. Goes on while new
+# processes appear, for at most 20 s. $! is the step's first process, even if the signal came before the shell could
+# store it.
 end_step() {
     asked="$!" rounds=0
     kill -s TERM "$!" 2>/dev/null || :
@@ -60,7 +61,7 @@ end_step() {
     wait "$!" || :
 }
 
-# $at_end: a command for what is not a process here.
+# $at_end: a command that ends what does not run as a process here.
 end_steps() {
     trap '' INT TERM HUP
     [ -z "$running" ] || end_step
