@@ -27,8 +27,8 @@ ifeq ($(CONFIG),fuzz)
 CC := clang
 endif
 
-# --- Flags. stb is used by its headers alone; its pkg-config file would link a library that nothing here needs. Of
-# OpenEXR the C core is used, its libraries of C++ are not.
+# --- Flags. Only the headers of stb are used; its pkg-config file would link a library that nothing here needs. Of
+# OpenEXR only the C core is used, not its C++ libraries.
 LIBRARIES := epoxy egl libdeflate libpng jansson muparser
 HEADERS   := cglm stb OpenEXR
 MISSING   := $(shell for p in $(LIBRARIES) $(HEADERS); do pkg-config --exists $$p || echo $$p; done 2>/dev/null)
@@ -41,9 +41,9 @@ OPTIMISE_coverage := -O1 -g
 SANITIZE_coverage := --coverage -fprofile-update=atomic
 OPTIMISE_threads  := -O1 -g -fno-omit-frame-pointer
 SANITIZE_threads  := -fsanitize=thread
-# Off, because gcc 12 is wrong about them: malloc-leak, as it forgets memory that a structure behind a pointer has taken
-# over (LeakSanitizer and `make torture` look for leaks); use-of-uninitialized-value, as it does not follow loops that set
-# an array element by element (clang-tidy does).
+# Off because of false reports by gcc 12. malloc-leak: it loses track of memory that a structure behind a pointer has
+# taken over (LeakSanitizer and `make torture` look for leaks). use-of-uninitialized-value: it does not follow loops
+# that set an array element by element (clang-tidy does).
 OPTIMISE_analyzer := -O1 -fanalyzer -DTRACTRIX_ANALYZER -Wno-analyzer-malloc-leak -Wno-analyzer-use-of-uninitialized-value
 OPTIMISE_fuzz     := -O1 -g -fno-omit-frame-pointer
 SANITIZE_fuzz     := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
@@ -51,17 +51,17 @@ LINKER_sanitize   := -Wl,--export-dynamic-symbol=dlclose
 LINKER_threads    := $(LINKER_sanitize)
 
 WARNINGS  := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wvla $(if $(WERROR),-Werror)
-# Library headers are not ours to mend: -isystem keeps their warnings out.
+# Warnings in the headers of other libraries cannot be fixed here; -isystem hides them.
 INCLUDES  := $(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(LIBRARIES) $(HEADERS) 2>/dev/null))
-# -fPIC, hidden: the same objects make programs and the library, which shows what tractrix.h declares.
-# -ffp-contract=off: the same bits whether or not the compiler may use fused multiply-adds.
+# -fPIC and hidden symbols: the same objects are used in programs and in the library, which exports only what tractrix.h
+# declares. -ffp-contract=off: the same results whether or not the processor has fused multiply-adds.
 C_FLAGS   := -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES) $(WARNINGS) -ffp-contract=off -pthread -fPIC -fvisibility=hidden \
              $(OPTIMISE_$(CONFIG)) $(SANITIZE_$(CONFIG)) $(CPPFLAGS) $(CFLAGS)
 LD_FLAGS  := -pthread -Wl,--as-needed $(SANITIZE_$(CONFIG)) $(LINKER_$(CONFIG)) $(LDFLAGS)
 LD_LIBS   := $(shell pkg-config --libs $(LIBRARIES) 2>/dev/null) $(filter -L% -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR 2>/dev/null)) -ldl -lm $(LDLIBS)
 
-# --- Files, in the rooms of src/, glsl/ and tests/. Every src/<room>/main_<x>.c is the program tractrix-<x>, every
-# tests/<room>/test_<x>.c a program of its own; the tests share tests/support/.
+# --- Files, in the rooms of src/, glsl/ and tests/. Each src/<room>/main_<x>.c is the program tractrix-<x>; each
+# tests/<room>/test_<x>.c is a program, too. The tests share tests/support/.
 MAINS     := $(wildcard src/*/main_*.c)
 STAND_IN  := src/mesh/write_stand_in.c # a tool of the build
 SOURCES   := $(filter-out $(MAINS) $(STAND_IN),$(wildcard src/*/*.c src/*/*/*.c))
@@ -85,18 +85,18 @@ SCRIPTS   := $(addprefix $(OUT)/tractrix-,farm turntable compare-goldens) # prog
 MANUALS   := $(addsuffix .1,$(PROGRAMS) $(SCRIPTS)) $(OUT)/tractrix-gen-fur.1
 SHELLS    := bash zsh fish
 COMPLETIONS := $(foreach shell,$(SHELLS),$(addsuffix .$(shell),$(PROGRAMS) $(SCRIPTS)))
-# Fault injection: the programs once more, with each call of calls.def wrapped, and what makes them fail.
+# Fault injection: the programs again, with each call of calls.def wrapped, and the code that makes these calls fail.
 FAULTY    := $(PROGRAMS:$(OUT)/%=$(OUT)/faults/%)
 FAULT_CALLS := $(shell sed -nEf tests/faults/wrapped.sed tests/faults/calls.def)
 TORTURE   := $(OUT)/tests/faults/torture
 TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c,$(wildcard tests/faults/*.c)))
 FOLDERS   := $(sort $(OUT)/lib/ $(OUT)/lib/pkgconfig/ $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
 
-# --- Build. Recipes that recurse use all processors unless -j says otherwise.
+# --- Build. Recipes that call make use all processors unless -j says otherwise.
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
 AGAIN = @$(MAKE) --no-print-directory
 
-# $(call run,WORD,COMMAND): a short line for the command unless V=1; nothing with make --silent.
+# $(call run,WORD,COMMAND): prints a short line instead of the command unless V=1; prints nothing with make --silent.
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
 
@@ -106,13 +106,14 @@ tests: $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)
 
 $(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<)
-ifeq ($(CONFIG),release) # a yardstick shall be as fast as the compiler makes it
+ifeq ($(CONFIG),release) # the reference for speed must be as fast as the compiler can make it
 $(OUT)/bench/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros -ffp-contract=fast
 endif
 KEEP_LOOPS := $(shell $(CC) -Werror --param max-completely-peel-times=15 -x c -c /dev/null -o /dev/null 2>/dev/null && echo --param max-completely-peel-times=15)
 LANE_PIXELS := $(addprefix $(OUT)/lanes/,composite.o pixels.o shade.o project.o)
-# Lanes: selects and roots without a thought for traps and errno, or nothing becomes vector instructions; a loop of 16
-# lanes is not unrolled before it can (gcc unrolls those of up to 16 turns). The same bits.
+# Lanes: without these flags, selects and square roots are not vectorised, because they might trap or set errno. Loops
+# of 16 lanes must not be unrolled before they are vectorised (gcc unrolls loops of up to 16 turns). The results have
+# the same bits.
 $(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
 $(LANE_PIXELS): C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
@@ -124,7 +125,7 @@ $(OUT)/tests/glsl_sources.c: scripts/embed-text $(TEST_SHADERS) $(OUT)/files
 	$(call run,EMBED,$(EMBED_GLSL) TEST_GLSL_SOURCES glsl/ $(TEST_SHADERS) >$@.tmp && mv $@.tmp $@)
 $(OUT)/report/report_texts.c: scripts/embed-text $(PAGES) $(OUT)/files
 	$(call run,EMBED,scripts/embed-text report/report.h 'ReportText*' REPORT_TEXTS src/report/ $(PAGES) >$@.tmp && mv $@.tmp $@)
-$(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o: %.o: %.c $(OUT)/flags # C promises only 4095 characters a string; every compiler takes more
+$(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o: %.o: %.c $(OUT)/flags # C guarantees only 4095 characters in a string; all compilers accept more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/mesh/stand_in_table.c: $(OUT)/mesh/write_stand_in
 	$(call run,MAKE,$< >$@.tmp && mv $@.tmp $@)
@@ -135,8 +136,8 @@ $(OUT)/mesh/stand_in_table.o: %.o: %.c $(OUT)/flags
 $(OUT)/image/jpeg.o: C_FLAGS += -fno-sanitize=shift # stb_image_write shifts bits beyond an int on purpose
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))
-# The library for other programs (tractrix.h), of what its room takes of the archive above. The static one is a single
-# object in which nothing but the API has a name that a host's could meet.
+# The library for other programs (tractrix.h), made of its room and of what this needs from the archive above. The
+# static library is a single object in which only the API has global names, so that no name can clash with the host's.
 LIBRARY_OBJECTS := $(filter $(OUT)/library/%,$(OBJECTS))
 LIBRARY := $(addprefix $(OUT)/lib/,libtractrix.so.0 libtractrix.so libtractrix.a pkgconfig/tractrix.pc)
 SHARED  := -shared -Wl,-soname,libtractrix.so.0 -Wl,--version-script=src/library/tractrix.map -Wl,-z,nodelete
@@ -171,7 +172,7 @@ $(SCRIPTS:%=%.$(1)): %.$(1): % scripts/help-pages
 	$$(call run,SHELL,scripts/help-pages $(1) $$< $(VERSION) >$$@.tmp && mv $$@.tmp $$@)
 endef
 $(foreach shell,$(SHELLS),$(eval $(call completion,$(shell))))
-# With what they share put in, so that each is one file.
+# The scripts, with what they share inserted, so that each is one file.
 $(SCRIPTS): $(OUT)/tractrix-%: scripts/% scripts/steps.sh | $(FOLDERS)
 	$(call run,COPY,sed -e '/^STEPS_HOME=/d' -e '/^\. ".*\/steps\.sh"$$/{r scripts/steps.sh' -e 'd;}' $< >$@.tmp && chmod 755 $@.tmp && mv $@.tmp $@)
 $(SCRIPTS:%=%.1): %.1: % scripts/help-pages $(OUT)/version.h
@@ -195,8 +196,8 @@ $(foreach main,$(MAINS:src/%.c=%),$(eval $(call faulty,$(main))))
 $(TORTURE): $(TORTURE_OBJECTS) $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
 
-# Stamps, rewritten only when what they hold changes, so that what depends on them is rebuilt just then: the flags,
-# the list of files (one may have been removed), the places of what is installed, and the version.
+# Stamps are rewritten only if their content changes, so that files that depend on them are rebuilt only then: the
+# flags, the list of files (one may have been removed), the installation paths, and the version.
 quote = '$(subst ','\'',$(1))'
 write_if_changed = printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 $(OUT)/flags: FORCE | $(FOLDERS)
@@ -211,7 +212,7 @@ $(OUT)/version.h: FORCE | $(FOLDERS)
 $(FOLDERS):
 	@mkdir -p $@
 
-# --- For people. Set-up comes first and make starts again after it, because the flags above ask pkg-config.
+# --- Targets for people. Set-up runs first and then starts make again, because the flags above call pkg-config.
 demo: ## set-up, build, and render the bundled scene to out/demo/
 	@scripts/setup build run
 	$(AGAIN) $(JOBS) all
@@ -222,7 +223,8 @@ test: ## set-up, build, and run all tests (ONLY=name: some of them)
 	$(AGAIN) $(JOBS) all tests
 	@tests/runner $(OUT) $(ONLY)
 
-# The thesis's sets: four that the program makes, Mohawk where it lies beside the project, and hair of Short's size.
+# The thesis's sets: four that the program makes, Mohawk if its file lies beside the project, and hair of the same size
+# as Short.
 MOHAWK := ../shared/assets/ratboy_mohawk.tfx
 SHORT   = $(OUT)/short_37747x8.tfx
 bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": more hair, drawing)
@@ -240,7 +242,7 @@ STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
 	scripts/stress $(OUT)/tractrix-bench $(STRESS)
 
-# Into a copy of the tree. It goes on where it was interrupted.
+# Works on a copy of the tree. An interrupted run continues.
 mutate: ## whether tests catch small faults, put in one at a time, hours (MUTATE="--only split"; tests/mutants.txt)
 	@scripts/setup build run test python
 	@scripts/mutate $(MUTATE)
@@ -252,7 +254,8 @@ torture: all tests ## every call of small runs fails in turn, 200 kills: an hour
 growth: all tests ## 10,000 scenes of the library and fewer simulations and devices: what stays: some minutes
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
 
-# --- Static checks and the sanitizers; all of them run, then the failures are named. One alone: make check-format.
+# --- Static checks and the sanitizers. All of them run, then the failed ones are named. A single one: make
+# check-format.
 CHECKS := commits format scripts benchmarks warnings clang cppcheck shaders gpu-statistics rounding abi release farm sanitize
 C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/glsl/*)
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
@@ -287,7 +290,8 @@ check-shaders:
 check-gpu-statistics: # registers and waves on GPUs; a line says so where a package for it is missing
 	$(QUIET) all
 	@scripts/gpu-statistics --programs $(OUT) || [ $$? = 77 ]
-# Tests whose figures depend on the driver's maths, with every root, power and angle two units in the last place off.
+# Tests whose results depend on the driver's maths, with an error of two units in the last place in every root, power
+# and angle.
 ROUNDED = ^test_(solver_|solvers|shadow|renderer|image_reference|collision|follow|volume|sleep|rest|carry|pose|distance_field).*\.c
 check-rounding:
 	$(QUIET) all tests
@@ -299,16 +303,16 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@scripts/setup farm
 	$(QUIET) all
 	@tests/runner $(OUT) test_farm
-# But for scripts that run the programs as others do, many times over, and tests that draw hundreds of images.
+# All tests except scripts that run the programs many times, as other tests do, and tests that draw hundreds of images.
 # SANITIZE_BUT=none runs all.
 SANITIZE_BUT = ^test_(bench_command|bench_html|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|furnace|gen_command|goldens|groom_command|html_report|install|light_command|light_turned|mutate|python|readme|stress|swatches|turntable_images|turntable_script|tutorial|(along|clamped|shadow|solvers|volume)[.])
-# Tests in C take the decisions of a GPU here, with maths one unit off: `make test` has those of this machine.
+# Tests in C behave as on a GPU here, with maths that are one unit off; `make test` runs them as this machine does.
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests
 	@TEST_ASSUME="hardware ulps=1" tests/runner $(SIDE)sanitize test_ '$(SANITIZE_BUT)'
-# Tests of what threads share: parallel_run, the output's worker, the video, pairs of images, progress, leftovers, two
-# devices of the library. Those
-# that draw hundreds of images stay out; scripts/run-threads goes through the same code once.
+# Tests of data that threads share: parallel_run, the output's workers, the video, pairs of images, progress, leftovers,
+# two devices of the library. Tests that draw hundreds of images are left out; scripts/run-threads runs the same code
+# once.
 THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|library_device|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
 check-threads: export TSAN_OPTIONS = suppressions=$(CURDIR)/tests/tsan.supp exitcode=66
 check-threads: ## data races of the threaded parts, by ThreadSanitizer: some minutes (ONLY=name: some tests)
@@ -338,7 +342,7 @@ coverage: ## lines of the readers and writers that the tests run: at least 90 % 
 	@tests/runner $(SIDE)coverage $(ONLY)
 	@scripts/coverage $(SIDE)coverage
 
-# --- Packages. They take minutes: no part of `make check`.
+# --- Packages. They take minutes and are not part of `make check`.
 deb: ## Debian packages in out/deb (dpkg-buildpackage), linted
 	@scripts/setup deb
 	@scripts/make-deb out/deb
@@ -346,7 +350,7 @@ check-deb: deb ## install them in a clean root, run the programs, purge them (as
 	@scripts/check-deb out/deb
 	@umask 077; TZ=Asia/Tokyo scripts/make-deb out/deb-again/elsewhere
 	@for file in out/deb/*.deb; do cmp $$file out/deb-again/elsewhere/$${file##*/} || exit 1; done; echo "check-deb: built twice, the same bytes"
-# The version that the programs say.
+# The version that the programs print.
 SAID = $$(sed -n 's/.*_VERSION "\(.*\)"/\1/p' $(OUT)/version.h)
 tarball: all ## an archive that runs where it is unpacked, out/tarball/*.tar.gz (Debian 12, Ubuntu 22.04 and newer)
 	@scripts/setup python
@@ -360,7 +364,7 @@ check-release: tarball ## unpack it in a clean root and run it (as root, with mm
 	@if [ "$$(id -u)" != 0 ] || ! command -v mmdebstrap >/dev/null; then \
 	    echo "check-release: not root, or no mmdebstrap (scripts/setup deb): skipped, the archive was only made"; exit 0; fi; \
 	scripts/check-tarball out/tarball/*.tar.gz
-# What programs that were built with an earlier release count on; of the room alone the types are to be seen.
+# The interface that programs built with an earlier release rely on. Only the types of the library's room are visible.
 ABI := src/library/tractrix.abi
 $(OUT)/abi/libtractrix.so.0: $(LIBRARY_OBJECTS:$(OUT)/%.o=src/%.c) $(wildcard src/library/*.h) src/library/tractrix.map $(OUT)/libtractrix.a
 	@mkdir -p $(@D)
@@ -391,7 +395,7 @@ bash_DIR = $(SHARE_DIR)/bash-completion/completions
 fish_DIR = $(SHARE_DIR)/fish/vendor_completions.d
 zsh_DIR = $(SHARE_DIR)/zsh/$(ZSH_FOLDER)
 ZSH_FOLDER ?= site-functions
-# Where the completion of FILE, PROGRAM.SHELL, goes; each shell has its own names.
+# The folder for the completion FILE, PROGRAM.SHELL; each shell has its own names.
 shell_of = $(patsubst .%,%,$(suffix $(1)))
 completion_of = $($(shell_of)_DIR)/$(patsubst %,$(completion_name_$(shell_of)),$(basename $(notdir $(1))))
 completion_name_bash := %

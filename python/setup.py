@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The version is the Makefile's, or TRACTRIX_VERSION. Where scripts/make-wheel has put the library beside the module, the
-wheel is for the platform TRACTRIX_PLATFORM; else it is for all, and takes the system's libtractrix.so.0."""
+"""The version is TRACTRIX_VERSION or that of the Makefile. If scripts/make-wheel has put the library beside the module,
+the wheel is for the platform TRACTRIX_PLATFORM; otherwise it is for all platforms and uses the system's
+libtractrix.so.0."""
 
 import os
 import pathlib
@@ -18,14 +19,14 @@ def version() -> str:
 
 
 class Bundled(Distribution):
-    """With files of one platform in it."""
+    """A distribution with files for one platform."""
 
     def has_ext_modules(self) -> bool:
         return bool(PLATFORM)
 
 
 class Wheel(bdist_wheel):
-    """No extension module after all, so for every Python 3."""
+    """Tags the wheel for every Python 3, because it has no extension module."""
 
     def get_tag(self) -> "tuple[str, str, str]":
         return "py3", "none", PLATFORM or "any"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A game's loop: the host has an OpenGL context of its own, hair is simulated in it by the pose of
-// a head bone, and the host draws it as lines from a buffer of its own.
+// A game's loop: the host has its own OpenGL context, simulates hair in it, attached to the pose of
+// a head bone, and draws it as lines from its own buffer.
 //   cc game_loop.c -o game_loop $(pkg-config --cflags --libs tractrix epoxy egl) -lm
 //   ./game_loop HAIR PICTURE.png
 #include <math.h>
@@ -57,7 +57,8 @@ int main(int argc, char **argv)
     HAIR(tractrix_device_borrow(&device, &error));
     HAIR(tractrix_scene_read(&scene, argv[1], &error));
     HAIR(tractrix_simulation_create(&simulation, device, scene, &error));
-    HAIR(tractrix_simulation_map(simulation, 0, TRACTRIX_GUIDES, &hair, &error)); // how many
+    HAIR(tractrix_simulation_map(simulation, 0, TRACTRIX_GUIDES, &hair,
+                                 &error)); // to get the numbers of strands and vertices
     GLint *first = malloc(hair.strand_count * sizeof *first);
     for (uint32_t s = 0, at = 0; s < hair.strand_count; at += hair.sizes[s++]) first[s] = (GLint)at;
     glGenBuffers(1, &buffer), glBindBuffer(GL_ARRAY_BUFFER, buffer);
@@ -70,14 +71,14 @@ int main(int argc, char **argv)
         TractrixPose head = {{0, 0, sin(angle / 2), cos(angle / 2)}, {0}};
         HAIR(tractrix_simulation_advance(simulation, &head, &error));
         HAIR(tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, buffer, 0, &error));
-        // The library has left defaults; what the host binds it binds again.
+        // The library has restored OpenGL's defaults; the host must bind its own state again.
         glBindFramebuffer(GL_FRAMEBUFFER, target), glViewport(0, 0, WIDTH, HEIGHT);
         glClearColor(0.1f, 0.11f, 0.13f, 1), glClear(GL_COLOR_BUFFER_BIT);
         glUseProgram(program), glBindVertexArray(array);
         glMultiDrawArrays(GL_LINE_STRIP, first, (const GLsizei *)hair.sizes,
                           (GLsizei)hair.strand_count);
     }
-    static uint8_t pixels[HEIGHT][WIDTH][4]; // the shader has turned them: top row first
+    static uint8_t pixels[HEIGHT][WIDTH][4]; // the shader flips the image: top row first
     glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     TractrixImage image = {sizeof image, WIDTH, HEIGHT, TRACTRIX_RGBA8, 0, pixels};
     HAIR(tractrix_image_write(&image, argv[2], &error));

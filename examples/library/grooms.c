@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A data set: grooms from numbers, ten frames of motion each, all positions in one .npy of shape
-// (grooms, strands, vertices, 4), a picture of each.
+// Makes a data set: grooms from numbers, ten frames of motion for each, all positions in one .npy
+// of shape (grooms, strands, vertices, 4), and a picture of each.
 //   cc grooms.c -o grooms $(pkg-config --cflags --libs tractrix) -lm
 //   ./grooms FOLDER COUNT
 #include <math.h>
@@ -20,7 +20,7 @@ static TractrixError error;
         }                                                                                          \
     } while (0)
 
-// Strands all over a ball of 10 cm; each groom has its own length and curl.
+// Strands all over a ball with a radius of 10 cm; each groom has its own length and curl.
 static void make_groom(float position[STRANDS][VERTICES][3], int groom)
 {
     double length = 0.08 + 0.02 * (groom % 5), curl = 0.004 * (groom % 3);
@@ -36,7 +36,7 @@ static void make_groom(float position[STRANDS][VERTICES][3], int groom)
     }
 }
 
-// The header of numpy's format 1.0: 128 bytes.
+// Writes the header of numpy's format 1.0: 128 bytes.
 static FILE *open_npy(const char *folder, int grooms)
 {
     char path[4096], header[128];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The OpenGL context that a game has: without a screen, by EGL (-lEGL), or with -DWINDOW that of a
-// hidden window of GLFW's (-lglfw).
+// The OpenGL context of a game: without a screen by EGL (-lEGL), or with -DWINDOW that of a hidden
+// GLFW window (-lglfw).
 #pragma once
 
 #include <epoxy/gl.h>
@@ -9,7 +9,7 @@
 #ifdef WINDOW
 #include <GLFW/glfw3.h>
 
-// Makes OpenGL 4.3 or newer current; false: there is none.
+// Makes OpenGL 4.3 or newer current; false if there is none.
 static bool host_context(int width, int height)
 {
     if (!glfwInit()) return false;
@@ -25,7 +25,7 @@ static bool host_context(int width, int height)
 {
     static const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
                                      EGL_NONE};
-    (void)width, (void)height; // what is drawn into is a texture
+    (void)width, (void)height; // the host draws to a texture
     EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, NULL, NULL);
     if (!display || !eglInitialize(display, NULL, NULL) || !eglBindAPI(EGL_OPENGL_API))
         return false;

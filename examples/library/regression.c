@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// An image regression test: draws a scene and compares it with a golden picture. Status 0: the same
-// within the limits; 1: different, the new picture is at NEW.png; 2: it cannot be told.
+// An image regression test: draws a scene and compares it with a golden picture. Status 0: equal
+// within the limits; 1: different, the new picture is at NEW.png; 2: an error prevented the
+// comparison.
 //   cc regression.c -o regression $(pkg-config --cflags --libs tractrix)
 //   ./regression SCENE GOLDEN.png NEW.png
 #include <stdio.h>
@@ -23,7 +24,7 @@ int main(int argc, char **argv)
     need(tractrix_picture_read(&golden, argv[2], &error));
     const TractrixImage *expected = tractrix_picture_image(golden);
 
-    // A CPU driver, so that a machine with a GPU draws the same.
+    // A CPU driver, so that a machine with a GPU draws the same image.
     const TractrixDeviceOptions options = {.size = sizeof options, .software = true};
     TractrixDevice *device;
     TractrixScene *scene;
@@ -40,7 +41,7 @@ int main(int argc, char **argv)
                            .pixels = malloc((size_t)expected->width * expected->height * 4)};
     need(tractrix_render(renderer, NULL, &image, &error));
 
-    // 2 levels of 255, but for 0.5 % of the pixels.
+    // Passes if at most 0.5 % of the pixels differ by more than 2 levels of 255.
     const TractrixLimits limits = {
         .size = sizeof limits, .pixel_tolerance = 2, .max_failing_percent = 0.5};
     TractrixFigures figures = {.size = sizeof figures};

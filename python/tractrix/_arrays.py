@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arrays of the caller as the library wants them: contiguous, 32 bits, of a known shape."""
+"""Converts arrays of the caller to the library's form: contiguous, 32 bits, with a known shape."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ def words(shape: tuple[int | None, ...]) -> str:
 
 
 def pointer(array: np.ndarray | None, kind: Any) -> Any:
-    """To the first number; it lives as long as the array. NULL for None."""
+    """A pointer to the first number, valid as long as the array. NULL for None."""
     return None if array is None else array.ctypes.data_as(ctypes.POINTER(kind))
 
 
 def strands(value: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (V, 3) of all strands one behind the other and the vertices of each, from (S, V, 3), a list of (V, 3)
-    or (points, sizes). What simulate() yields, with a fourth number, is taken, too."""
+    """The positions (V, 3) of all strands, concatenated, and the number of vertices of each strand; from (S, V, 3), a
+    list of (V, 3) or (points, sizes). Positions that simulate() yields, with a fourth number, are accepted, too."""
     if isinstance(value, tuple) and len(value) == 2 and array_of("strands[1]", value[1]).ndim == 1:
         points, sizes = points_of("strands[0]", value[0]), numbers("strands[1]", value[1], (None,), np.uint32)
         if sizes.sum(dtype=np.uint64) != len(points):
@@ -69,7 +69,7 @@ def points_of(name: str, value: Any) -> np.ndarray:
     return numbers(name, array[:, :3] if array.ndim == 2 and array.shape[1] == 4 else array, (None, 3))
 
 
-# Metres of a unit by its name, as --unit has them.
+# Metres in a unit, by the names of --unit.
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How much two images differ."""
+"""Compares two images."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ class Comparison(NamedTuple):
 
 def limits(pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
            max_flip: float | None = None, pixels_per_degree: float | None = None) -> Limits:
-    """As tractrix-compare takes its options: without any, images are the same if they are equal; with `max_flip` alone it
-    is the only limit."""
+    """The limits, as tractrix-compare reads its options: without any, images must be equal; `max_flip` alone is the only
+    limit."""
     for name, value in (("pixel_tolerance", pixel_tolerance), ("max_failing_percent", max_failing_percent),
                         ("max_flip", max_flip), ("pixels_per_degree", pixels_per_degree)):
         if value is not None and not value >= 0:
             raise usage(f"{name}: got {value}: expected a number from 0 on")
-    if max_flip == 0:  # of equal images alone; the library takes 0 for no limit
+    if max_flip == 0:  # only equal images pass; the library takes 0 as "no limit"
         pixel_tolerance = max_failing_percent = max_flip = None
     pixels = max_flip is None or pixel_tolerance is not None or max_failing_percent is not None
     return Limits(pixel_tolerance=(pixel_tolerance or 0) if pixels else -1,
@@ -52,10 +52,11 @@ def limits(pixel_tolerance: float | None = None, max_failing_percent: float | No
 def compare(image: ImageLike, golden: ImageLike, *, mask: ImageLike | None = None, pixel_tolerance: float | None = None,
             max_failing_percent: float | None = None, max_flip: float | None = None,
             pixels_per_degree: float | None = None) -> Comparison:
-    """Compares two images of one size: arrays (H, W), (H, W, 3), (H, W, 4) of uint8, uint16 or floats, or paths. Alpha
-    counts. In a `mask` white is compared, black is not. The limits are tractrix-compare's: a pixel passes if no channel
-    differs by more than `pixel_tolerance` levels of 255, an image if at most `max_failing_percent` of its pixels do not
-    and its mean FLIP is at most `max_flip`. Raises TractrixError(2) if the sizes differ."""
+    """Compares two images of equal size: arrays (H, W), (H, W, 3), (H, W, 4) of uint8, uint16 or floats, or paths. Alpha
+    is compared, too. White pixels of a `mask` are compared, black pixels are not. The limits are those of
+    tractrix-compare: a pixel passes if no channel differs by more than `pixel_tolerance` levels of 255; an image passes
+    if at most `max_failing_percent` of its pixels fail and its mean FLIP is at most `max_flip`. Raises TractrixError(2)
+    if the sizes differ."""
     a, b = rgba("golden", golden), rgba("image", image)
     masked = None if mask is None else rgba("mask", mask)
     figures = Figures()

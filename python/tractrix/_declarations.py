@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tractrix.h for ctypes: its structs and the functions that this module calls. tests/python/test_declarations.py
-compares all of it with the header."""
+"""tractrix.h for ctypes: its structs, and the functions that this module calls. tests/python/test_declarations.py
+compares them with the header."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The device of this process: one, opened when it is first needed."""
+"""The device of this process. There is one; it is opened when it is first needed."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def device() -> Handle:
 
 
 def select_device(name: str | None = None, *, software: bool = False, require_hardware: bool = False) -> None:
-    """Says which device draws, before the first call that needs one: `name` as tractrix-render's --device (number, part
-    of the name, PCI address, node), `software` only a CPU driver, `require_hardware` none of these. Without it the best
-    device is taken. Raises TractrixError(2) once another one is open."""
+    """Chooses the device that draws. Call it before the first call that needs a device; without it the best device is
+    used. `name`: as in tractrix-render --device (number, part of the name, PCI address, node); `software`: only CPU
+    drivers; `require_hardware`: no CPU drivers. Raises TractrixError(2) if another device is already open."""
     global _options
     with lock:
         if _device is not None and _options != (name, software, require_hardware):
@@ -38,8 +38,8 @@ def select_device(name: str | None = None, *, software: bool = False, require_ha
 
 
 def describe_device() -> dict[str, str]:
-    """What the device is: `renderer`, `version`, `vendor`, `processor`, `path` (the way in), `pci`, `uuid`, `node`, and
-    `passed-over` (why no GPU is used); without what is not known. Opens it."""
+    """Properties of the device: `renderer`, `version`, `vendor`, `processor`, `path` (EGL or OSMesa), `pci`, `uuid`,
+    `node`, and `passed-over` (why no GPU is used). Unknown properties are missing. Opens the device."""
     with lock:
         texts = {what: library().tractrix_device_text(device().value, what.encode()).decode() for what in _TEXTS}
     return {what: text for what, text in texts.items() if text}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Images as arrays (H, W, 4), and files of them."""
+"""Images as arrays (H, W, 4), and image files."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ ImageLike = Union[np.ndarray, str, "os.PathLike[str]"]
 
 
 def rgba(name: str, value: Any) -> np.ndarray:
-    """An image as (H, W, 4): grey becomes RGB, what has no alpha is opaque. A path is read. uint8 and uint16 are sRGB
-    with straight alpha, floats linear light with premultiplied alpha."""
+    """An image as (H, W, 4): grey becomes RGB, images without alpha become opaque. A path is read. uint8 and uint16 are
+    sRGB with straight alpha; floats are linear light with premultiplied alpha."""
     if isinstance(value, (str, os.PathLike)):
         return read_image(value)
     array = np.asarray(value)
@@ -47,7 +47,7 @@ def image_of(array: np.ndarray) -> Image:
 
 
 def read_image(path: str | os.PathLike[str]) -> np.ndarray:
-    """The image of a PNG, EXR or PFM file: (H, W, 4), uint8 or uint16 as in the file, or float32 of linear light."""
+    """Reads a PNG, EXR or PFM file: (H, W, 4), uint8 or uint16 as in the file, or linear light as float32."""
     picture = Handle("tractrix_picture_read", "tractrix_picture_destroy", os.fsencode(path))
     image = library().tractrix_picture_image(picture.value).contents
     dtype = DTYPES[image.format]
@@ -60,6 +60,6 @@ def read_image(path: str | os.PathLike[str]) -> np.ndarray:
 
 
 def write_image(path: str | os.PathLike[str], image: ImageLike) -> None:
-    """Writes uint8 and uint16 to .png, floats to .exr or .pfm; opaque images without alpha, as tractrix-render does."""
+    """Writes uint8 and uint16 to .png, floats to .exr or .pfm. Opaque images are written without alpha, as tractrix-render does."""
     array = rgba("image", image)
     call("tractrix_image_write", ctypes.byref(image_of(array)), os.fsencode(path))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""libtractrix.so.0, loaded at the first call: `import tractrix` never fails for lack of it."""
+"""Loads libtractrix.so.0 at the first call, so that `import tractrix` does not fail if it is missing."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from ._declarations import FUNCTIONS, Error
 from ._error import FAILED, error_of
 
 SONAME = "libtractrix.so.0"
-OLDEST = 0x000200  # the version that this module was written for; newer ones only add
-# All handles of one device are used by one thread at a time; ctypes lets other threads run during a call.
+OLDEST = 0x000200  # the version that this module was written for; newer versions only add functions
+# A device's handles may be used by one thread at a time, but ctypes lets other threads run during a call.
 lock = threading.RLock()
 
 
 @functools.lru_cache(maxsize=None)
 def library() -> ctypes.CDLL:
-    """TRACTRIX_LIBRARY, or the file beside this module (wheels), or the system's."""
+    """TRACTRIX_LIBRARY, or the file beside this module (in wheels), or the system's library."""
     beside = pathlib.Path(__file__).with_name(SONAME)
     path = os.environ.get("TRACTRIX_LIBRARY") or (str(beside) if beside.exists() else SONAME)
     try:
@@ -42,7 +42,7 @@ def library() -> ctypes.CDLL:
 
 
 def call(name: str, *arguments: Any) -> None:
-    """Calls a function that returns a TractrixResult, its error put last; raises TractrixError."""
+    """Calls a function that returns a TractrixResult and takes an error as the last argument. Raises TractrixError."""
     error = Error()
     code = getattr(library(), name)(*arguments, ctypes.byref(error))
     if code:
@@ -55,7 +55,7 @@ def _destroy(function: Any, pointer: ctypes.c_void_p) -> None:
 
 
 class Handle:
-    """A pointer of the library's, destroyed once: by close(), or with its last reference, or as Python ends."""
+    """A pointer from the library. It is destroyed once: by close(), with its last reference, or when Python ends."""
 
     def __init__(self, create: str, destroy: str, *arguments: Any) -> None:
         self.value = ctypes.c_void_p()
@@ -64,10 +64,10 @@ class Handle:
 
 
 def version() -> str:
-    """Of the library that was loaded."""
+    """The version of the loaded library."""
     return library().tractrix_version().decode()
 
 
 def set_threads(count: int) -> None:
-    """Threads that a call may use, 1 to 16; 0: one a processor that the process may use, the default."""
+    """Sets the number of threads that a call may use, 1 to 16. 0, the default: one for each processor that the process may use."""
     library().tractrix_set_threads(count)

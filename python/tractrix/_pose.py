@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a head is: a matrix, or a quaternion and a translation."""
+"""The pose of a head: a matrix, or a quaternion and a translation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ._error import usage
 # A rigid (4, 4) matrix, or ((x, y, z, w), (x, y, z)).
 PoseLike = Union[np.ndarray, "tuple[np.ndarray, np.ndarray]"]
 
-ROUNDING = 1e-4  # how far from rigid a matrix of 32 bits that went through some products may be
+ROUNDING = 1e-4  # tolerance: rounding errors of a product of some float32 matrices
 
 
 def pose_of(value: PoseLike) -> Pose:
@@ -30,12 +30,12 @@ def pose_of(value: PoseLike) -> Pose:
 
 
 def quaternion(turn: np.ndarray) -> np.ndarray:
-    """x y z w of a rotation matrix: the eigenvector of Bar-Itzhack's symmetric matrix (J. Guidance 23(6), 2000), which
-    also takes the nearest rotation of a matrix with rounding errors."""
+    """The quaternion x y z w of a rotation matrix: an eigenvector of Bar-Itzhack's symmetric matrix (J. Guidance 23(6),
+    2000). For a matrix with rounding errors this gives the nearest rotation."""
     m = turn
     k = np.array([
         [m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[2, 0] + m[0, 2], m[2, 1] - m[1, 2]],
         [0, m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2], m[0, 2] - m[2, 0]],
         [0, 0, m[2, 2] - m[0, 0] - m[1, 1], m[1, 0] - m[0, 1]],
         [0, 0, 0, m[0, 0] + m[1, 1] + m[2, 2]]])
-    return np.linalg.eigh(k.T)[1][:, -1]  # of its lower triangle; the largest value comes last
+    return np.linalg.eigh(k.T)[1][:, -1]  # eigh reads the lower triangle; the largest eigenvalue comes last

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a simulation starts from: strands, mesh and parameters."""
+"""The input of a simulation: strands, mesh and parameters."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._error import usage
 from ._library import Handle, call
 from ._values import text_of
 
-# (S, V, 3), a list of (V, 3), (points, sizes), or a path of a hair or scene file.
+# (S, V, 3), a list of (V, 3), (points, sizes), or the path of a hair or scene file.
 StrandsLike = Union[np.ndarray, Sequence[np.ndarray], "tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
 # (vertices, triangles), or a path.
 MeshLike = Union["tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
@@ -29,7 +29,7 @@ def is_path(value: Any) -> bool:
 
 
 def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, parameters: Mapping[str, Any]) -> Handle:
-    """A scene of its own. `parameters` with unit and up, and with thickness, color and uv of arrays."""
+    """A new scene. `parameters` may have unit and up and, for arrays of strands, thickness, color and uv."""
     given = {name: value for name, value in parameters.items() if value is not None}
     if is_path(strands):
         scene = Handle("tractrix_scene_read", "tractrix_scene_destroy", os.fsencode(strands))
@@ -83,5 +83,6 @@ def _set_mesh(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], pa
 
 
 def _is_array(value: Any) -> bool:
-    """Colors of vertices, rather than a value of the parameter color ("auburn", (1, 0, 0)): two vertices have 6 numbers."""
+    """Whether `value` has colors by vertex, not a value of the parameter color ("auburn", (1, 0, 0)). Two vertices already
+    have 6 numbers."""
     return not is_path(value) and _arrays.array_of("color", value).size > 4

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hair that moves and is drawn."""
+"""Simulates and draws hair."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ._parameters import Parameters
 
-# (S, V, 4): x y z 1 in the world, m, root first; a list of (V, 4) where strands differ in their number of vertices.
+# (S, V, 4): x y z 1 in the world, m, root first; a list of (V, 4) if strands have different numbers of vertices.
 PositionsLike = Union[np.ndarray, List[np.ndarray]]
 Part = Literal["guides", "followers"]
 PARTS = {"guides": GUIDES, "followers": FOLLOWERS}
@@ -37,11 +37,12 @@ def part_of(name: str) -> int:
 
 
 class Simulation:
-    """Hair at time 0, which `advance` moves on frame by frame. `strands` are (S, V, 3), a list of (V, 3) or
-    (points, sizes), for which `unit` is required, or the path of a hair or scene file. `mesh` is (vertices, triangles) or
-    a path; with `deforms` its vertices are given to each `advance`. All other keywords are the parameters of
-    tractrix-render (docs/options.md), `-` as `_`; for arrays `thickness` (relative to its mean, which `radius` gives), `color` (linear RGB, opacity) and
-    `uv` (of roots) may be arrays as well. Raises TractrixError.
+    """Hair that starts at time 0; each `advance` simulates one frame. `strands` are arrays, (S, V, 3), a list of (V, 3)
+    or (points, sizes), for which `unit` is required, or the path of a hair or scene file. `mesh` is
+    (vertices, triangles) or a path; with `deforms` each `advance` takes its vertices. All other keywords are the
+    parameters of tractrix-render (docs/options.md), with `_` for `-`. If strands are arrays, `thickness` (relative to
+    its mean, which `radius` sets), `color` (linear RGB, opacity) and `uv` (of roots) may be arrays, too. Raises
+    TractrixError.
 
     Closed by close(), by `with`, or with its last reference."""
 
@@ -62,7 +63,7 @@ class Simulation:
     def close(self) -> None:
         with lock:
             self._forget_renderers()
-            self._handle = None  # the library's is destroyed now, or with the last view of its memory
+            self._handle = None  # the library's object is destroyed now, or with the last view of its memory
 
     @property
     def _pointer(self) -> ctypes.c_void_p:
@@ -77,26 +78,26 @@ class Simulation:
 
     @property
     def messages(self) -> list[str]:
-        """Lines about what was mended, guessed or left out when the scene was read."""
+        """Lines about repairs, guesses and omissions when the scene was read."""
         with lock:
             return library().tractrix_simulation_messages(self._pointer).decode().splitlines()
 
     @property
     def time(self) -> float:
-        """Seconds of the scene."""
+        """The scene's time in seconds."""
         with lock:
             return library().tractrix_simulation_time(self._pointer)
 
     def set(self, **parameters: Unpack[Parameters]) -> None:
-        """Changes live parameters (`tractrix.parameters()[name].live`) from the next step or image on."""
+        """Changes live parameters (`tractrix.parameters()[name].live`). They take effect at the next step or image."""
         with lock:
             for name, value in parameters.items():
                 call("tractrix_simulation_set", self._pointer, name.encode(), text_of(name, value).encode())
 
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
-        """On by one frame, 1 / fps seconds. `head`: where the head is at its end, a rigid (4, 4) matrix or
-        ((x, y, z, w), (x, y, z)); without it as the scene says, or where it is. `mesh`: the vertices (N, 3) of a mesh that
-        deforms at the frame's end, in the world, m, y up."""
+        """Simulates one frame, 1 / fps seconds. `head`: the head's pose at the end of the frame, a rigid (4, 4) matrix or
+        ((x, y, z, w), (x, y, z)); without it the head moves as the scene says, or stays. `mesh`: the vertices (N, 3) of a
+        deforming mesh at the end of the frame, in the world, m, y up."""
         if head is not None and mesh is not None:
             raise usage("advance: both head and mesh: expected one of them")
         with lock:
@@ -107,16 +108,16 @@ class Simulation:
                 call("tractrix_simulation_advance", self._pointer, None if head is None else ctypes.byref(pose_of(head)))
 
     def positions(self, section: int = 0, *, part: Part = "guides", copy: bool = True) -> PositionsLike:
-        """The vertices as drawn now, of guides or of followers, read-only: (S, V, 4), x y z 1 in the world, m, root first;
-        a list of (V, 4) if strands differ in size. With copy=False a view of the library's memory, which changes
-        with the next call of this object; the memory stays while there is a view of it."""
+        """The vertices of guides or followers as they are drawn now, read-only: (S, V, 4), x y z 1 in the world, m, root
+        first; a list of (V, 4) if strands have different numbers of vertices. With copy=False the array is a view of the
+        library's memory, whose content changes with the next call of this object. The memory lives as long as the view."""
         view = Positions()
         with lock:
             call("tractrix_simulation_map", self._pointer, section, part_of(part), ctypes.byref(view))
             if not view.vertex_count:
                 return np.empty((0, 0, 4), np.float32)
             memory = (ctypes.c_float * 4 * view.vertex_count).from_address(ctypes.addressof(view.position.contents))
-            memory.owner = self._handle  # the array keeps `memory`, which keeps the simulation
+            memory.owner = self._handle  # the array holds `memory`, which holds the simulation
             points = np.ctypeslib.as_array(memory)
             sizes = np.ctypeslib.as_array(view.sizes, (view.strand_count,))
             if copy:
@@ -128,9 +129,9 @@ class Simulation:
 
     def render(self, size: tuple[int, int] = (960, 960), *, dtype: Any = np.uint8,
                view: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
-        """An image as things are now: (H, W, 4), top row first. uint8 and uint16 are sRGB with straight alpha, float32
-        linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for column vectors;
-        without it the scene's camera. An automatic exposure is found at the first image of each size."""
+        """An image of the current state: (H, W, 4), top row first. uint8 and uint16 are sRGB with straight alpha; float32
+        is linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for column
+        vectors; default: the scene's camera. Automatic exposure is determined at the first image of each size."""
         try:
             kind = np.dtype(dtype)
         except TypeError:
@@ -160,8 +161,8 @@ def _view_of(view: tuple[np.ndarray, np.ndarray]) -> View:
 def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[int, int] = (960, 960),
            dtype: Any = np.uint8, view: tuple[np.ndarray, np.ndarray] | None = None,
            frames: int = 0, **parameters: Unpack[Parameters]) -> np.ndarray:
-    """One image, (H, W, 4): of the hair as it is, or simulated for `frames` frames. For more of the same hair make a
-    Simulation, which has the other arguments."""
+    """One image, (H, W, 4), of the hair at rest, or after a simulation of `frames` frames. For several images of the
+    same hair make a Simulation, which takes the same other arguments."""
     with Simulation(strands, mesh=mesh, **parameters) as simulation:
         for _ in range(frames):
             simulation.advance()
@@ -171,8 +172,8 @@ def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[in
 def simulate(strands: StrandsLike, *, frames: int | None = None, head: Iterable[PoseLike] | None = None,
              mesh: MeshLike | None = None, mesh_frames: Iterable[np.ndarray] | None = None, section: int = 0,
              part: Part = "guides", copy: bool = True, **parameters: Unpack[Parameters]) -> Iterator[PositionsLike]:
-    """The positions at the end of each frame. `head` has a pose for each, `mesh_frames` the vertices of a mesh that
-    deforms; without `frames` there are as many as they have. Else as Simulation and its methods."""
+    """Yields the positions at the end of each frame. `head` has a pose for each frame, `mesh_frames` the vertices of a
+    deforming mesh; without `frames` their length is the number of frames. Other arguments as in Simulation."""
     if head is not None and mesh_frames is not None:
         raise usage("simulate: both head and mesh_frames: expected one of them")
     if frames is None and head is None and mesh_frames is None:
@@ -184,7 +185,7 @@ def simulate(strands: StrandsLike, *, frames: int | None = None, head: Iterable[
 
 def _positions(simulation: Simulation, frames: int | None, head: Iterable[PoseLike] | None,
                mesh_frames: Iterable[np.ndarray] | None, section: int, part: Part, copy: bool) -> Iterator[PositionsLike]:
-    """A generator of its own, so that simulate() raises at the call rather than at the first item."""
+    """A separate generator, so that simulate() raises at the call and not at the first item."""
     with simulation:
         driven = head if head is not None else mesh_frames
         count = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Parameters: the table of the library, and values as the text that a flag of tractrix-render has."""
+"""Parameters: the library's table, and values as text in the form of tractrix-render's flags."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ._library import library
 
 
 class Parameter(NamedTuple):
-    """A row of the library's table. `kind` says what a value is ("float", "vec3", "choice" ...), `minimum` and `maximum`
-    bound each number (both 0: none), `owner` names the solvers that have it (none: all), `of_section` may differ by
-    section, `live` may be changed while a simulation runs."""
+    """A row of the library's table. `kind`: type of the value ("float", "vec3", "choice" ...); `minimum` and `maximum`:
+    limits of each number (both 0: no limits); `owner`: solvers that have it (empty: all); `of_section`: it may differ
+    between sections; `live`: it may be changed while a simulation runs."""
 
     name: str
     kind: str
@@ -45,18 +45,18 @@ def parameters() -> Mapping[str, Parameter]:
                                         row.maximum, row.of_section, row.live)
 
 
-# What stands between the numbers of a kind; all others have commas.
+# The separator between the numbers of a kind; all other kinds have commas.
 _SEPARATORS = {"size": "x", "part": "/", "profile": ":"}
 
 
 def plain(value: Any) -> Any:
-    """numpy's arrays and numbers as Python's."""
+    """numpy's arrays and numbers as Python lists and numbers."""
     return value.tolist() if hasattr(value, "tolist") else value
 
 
 def text_of(name: str, value: Any) -> str:
-    """`value` as a flag has it: texts and paths as they are, True as true, numbers in full, sequences with what the kind
-    of parameter puts between numbers."""
+    """`value` as the text of a flag: texts and paths unchanged, True as true, numbers with all digits, sequences with the
+    separator of the parameter's kind."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     value = plain(value)

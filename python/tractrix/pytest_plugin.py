@@ -15,8 +15,8 @@ import pytest
 if TYPE_CHECKING:
     from ._image import ImageLike
 
-# In the folder of results, which may be anybody's: a folder that belongs to the plugin, with pairs that differ, as
-# tractrix-compare pairs them, and the page that shows them.
+# The results folder may contain other files. In it, PAIRS is a folder of the plugin with the pairs that differ, named
+# as tractrix-compare pairs them, and the page that shows them.
 PAIRS, GOLDENS, IMAGES, REPORT = "tractrix-pairs", "goldens", "images", "report.html"
 # The test that each image of this session belongs to, by the image's name among the pairs.
 OWNERS: pytest.StashKey[dict[str, str]] = pytest.StashKey()
@@ -38,7 +38,7 @@ def results_of(config: pytest.Config) -> pathlib.Path:
 
 
 def is_worker(config: pytest.Config) -> bool:
-    """Of pytest-xdist, whose controller keeps the results."""
+    """Whether this is a worker of pytest-xdist; the controller keeps the results."""
     return hasattr(config, "workerinput")
 
 
@@ -49,7 +49,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 class ImageCheck:
-    """What the fixture gives."""
+    """The object that the fixture returns."""
 
     def __init__(self, request: pytest.FixtureRequest) -> None:
         self._config = request.config
@@ -63,9 +63,9 @@ class ImageCheck:
     def check(self, image: ImageLike, *, name: str | None = None, mask: ImageLike | None = None,
               pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
               max_flip: float | None = None) -> None:
-        """Fails unless `image` is its golden within the limits, which are those of tractrix.compare: without any, equal.
+        """Fails unless `image` matches its golden within the limits of tractrix.compare; without limits it must be equal.
         The golden is goldens/MODULE/TEST.png beside the test file, TEST-NAME.png with a `name`, .exr for floats. A missing
-        golden is a failure; only --tractrix-update writes one."""
+        golden is a failure; only --tractrix-update writes goldens."""
         __tracebackhide__ = True
         from . import compare
         from ._image import read_image, rgba
@@ -93,7 +93,7 @@ class ImageCheck:
                                     f"{result.at[0]},{result.at[1]}, FLIP {result.flip:.4f}")
 
     def _flat(self, golden: pathlib.Path) -> str:
-        """A golden's name among the pairs of all folders: FOLDER.MODULE.TEST.png, FOLDER that of the test file."""
+        """A golden's name among the pairs of all folders: FOLDER.MODULE.TEST.png, where FOLDER is the test file's folder."""
         return f"{file_name(self._module, None)}.{golden.name}"
 
     def _fail(self, golden: pathlib.Path, new: Any, what: str) -> None:
@@ -117,13 +117,13 @@ class ImageCheck:
 
 
 def file_name(test: str, name: str | None) -> str:
-    """Of a golden, without suffix: what may be in a file's name everywhere."""
+    """A golden's file name without suffix, with characters that all file systems allow."""
     return re.sub(r"[^A-Za-z0-9._-]+", "_", test if name is None else f"{test}-{name}").strip("_")
 
 
 @pytest.fixture
 def tractrix_image(request: pytest.FixtureRequest) -> ImageCheck:
-    """`tractrix_image.check(image, max_flip=0.02)`: the image equals its golden within limits."""
+    """`tractrix_image.check(image, max_flip=0.02)` fails unless the image matches its golden within the limits."""
     return ImageCheck(request)
 
 
@@ -148,7 +148,7 @@ COMPARE = "tractrix-compare"
 
 
 def compare_program() -> str:
-    """That of this package (wheels), of TRACTRIX_BIN, or of PATH."""
+    """tractrix-compare from this package (in wheels), TRACTRIX_BIN or PATH."""
     beside = pathlib.Path(__file__).with_name(COMPARE)
     if beside.exists():
         return str(beside)
@@ -157,7 +157,7 @@ def compare_program() -> str:
 
 
 def write_report(results: pathlib.Path) -> None:
-    """Every image in it has failed its test, so the page has no limits: what differs at all is different there."""
+    """Writes the page. All its images have failed their tests, so it has no limits: any difference counts."""
     done = subprocess.run([compare_program(), "-q", str(results / GOLDENS), str(results / IMAGES), "--html", str(results / REPORT)],
                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode > 1:  # 1: images differ
