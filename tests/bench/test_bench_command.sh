@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The command line of tractrix-bench: rows in all three forms, bounds as exit statuses, messages. No timings.
+# The command line of tractrix-bench: rows in all three formats, bounds as exit statuses, messages. No timings.
 . tests/support/claims.sh
 program=$bin/tractrix-bench
 
-# field FILE.csv NAME: the column's values, a line each.
+# field FILE.csv NAME: the column's values, one on each line.
 field() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) at = i; next } { print $at }' "$1"; }
 # same A B WHAT
 same() { if [ "$1" = "$2" ]; then good; else bad "$3: got '$1', expected '$2'"; fi; }
@@ -98,7 +98,7 @@ run 0 stress --algo hybrid --cases 48 --steps 50 --csv "$work/kept.csv"
 same "$(field "$work/kept.csv" what) $(field "$work/kept.csv" cases) $(field "$work/kept.csv" failures)" "form 48 0" "the row"
 
 claim "stress: every case that breaks a bound is named on the screen and in both files, its command repeats it, and it ends with 1"
-# A strand that falls uses half of what it is allowed, whatever its solver: so a bound of 0.4 of that is broken.
+# A falling strand uses half of the energy that it is allowed, with any solver, so a bound of 0.4 of that is broken.
 run 1 stress --algo hybrid --cases 48 --steps 50 --allow 0.4 --csv "$work/stress.csv" --json "$work/stress.json"
 failures=$(field "$work/stress.csv" failures | tail -1)
 if [ "$failures" -gt 0 ]; then good; else bad "nothing is broken"; fi

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The page of tractrix-bench --html and of its command page: what is in the file, then, in a headless Chromium, what a reader
-# does with it.
+# The page of tractrix-bench --html and of its command `page`: first the content of the file, then the actions of a
+# reader, in a headless Chromium.
 . tests/support/claims.sh
 . tests/support/browser.sh
 program=$bin/tractrix-bench

@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# tractrix-bench groom: what it measures, bounds as exit statuses, messages. No timings.
+# tractrix-bench groom: its measurements, bounds as exit statuses, messages. No timings.
 . tests/support/claims.sh
 program=$bin/tractrix-bench
 
-# field FILE.csv NAME: the column's values, a line each.
+# field FILE.csv NAME: the column's values, one on each line.
 field() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) at = i; next } { print $at }' "$1"; }
 # same A B WHAT
 same() { if [ "$1" = "$2" ]; then good; else bad "$3: got '$1', expected '$2'"; fi; }
-# true_of WHAT CONDITION: the condition is awk's.
+# true_of WHAT CONDITION: CONDITION is an awk expression.
 true_of() { if awk "BEGIN { exit !($2) }"; then good; else bad "$1: $2"; fi; }
 "$bin/tractrix-gen" --kind curls --shape sphere --count 40 --vertices 12 --length 0.3 --curl-radius 0.01 --curl-turns 2 --seed 1 -q -o "$work/hair.tfx" --mesh "$work/head.obj"
 
@@ -39,7 +39,7 @@ command=$(field "$work/few.csv" command | sed "s/^tractrix-bench //;s/--wind 6;0
 eval "run 1 $command --part rest --csv '$work/again.csv'"
 same "$(field "$work/again.csv" rest)" "$(field "$work/few.csv" rest)" "the repeated row"
 
-# Measured: 0.947 without followers, 0.887 with them; 0.887 and 0.742 where each strand has a wind of its own.
+# Measured: 0.947 without followers, 0.887 with them; if each strand has its own wind, 0.887 and 0.742.
 claim "locks hold together in a shake in the wind, followers too; hair that nothing holds falls apart"
 "$bin/tractrix-gen" fur "$work/head.obj" --count 600 --guides 100 --clumps 20 --clump 0.85 --vertices 12 --length 0.2 --gravity-bend 40 --seed 1 -q -o "$work/locks.tfx"
 while read -r followers least; do

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# tractrix-bench light: bounds against path-traced cases, and what it says of files that are wrong. No timings.
+# tractrix-bench light: bounds against path-traced cases, and messages about wrong files. No timings.
 . tests/support/claims.sh
 program=$bin/tractrix-bench
 
-# field FILE.csv NAME: the column's values, a line each.
+# field FILE.csv NAME: the column's values, one on each line.
 field() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) at = i; next } { print $at }' "$1"; }
 # same A B WHAT
 same() { if [ "$1" = "$2" ]; then good; else bad "$3: got '$1', expected '$2'"; fi; }
@@ -46,7 +46,8 @@ says "scene.json: no case"; says "bounds are broken"; is_png "$work/own.png"
 same "$(field "$work/own_rows.csv" scene | tr '\n' ' ')" "one mean " "cases"
 
 claim "an image that is the tracer's has a mean of 1 and a rel of 0"
-# The mean of the first run's image over the table's tells what the table must be for that; one block alone has no other shape.
+# The mean of the first run's image over the table gives the table's values for the image. A single block has no other
+# shape.
 printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [8, 8], "shadow": "dom"}' >"$work/own/one.json"
 table 0.1 | head -2 >"$work/own/one.csv"
 run 1 light --reference "$work/own" --case one --way none --frames 1 --csv "$work/first.csv"

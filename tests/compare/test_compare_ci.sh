@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What tractrix-compare has for continuous integration: masks, JUnit, annotations, lists of failures.
+# tractrix-compare for continuous integration: masks, JUnit, annotations, lists of failures.
 # shellcheck disable=SC2016 # backticks of Markdown
 . tests/support/claims.sh
 program=$(realpath "$bin")/tractrix-compare
@@ -8,7 +8,8 @@ unset CI_PROJECT_DIR GITHUB_WORKSPACE GITHUB_STEP_SUMMARY JENKINS_URL
 golden=tests/golden
 a=$golden/curls_still.png b=$golden/curls_split.png
 
-# picture FILE LEFT RIGHT [WIDTH]: PFM of WIDTH x 30 pixels (40), in grey: half 0, white 1 or black.
+# picture FILE LEFT RIGHT [WIDTH]: a PFM of WIDTH x 30 pixels (default 40), in grey; its left half and its right half
+# are white (1) or black.
 picture() {
     width=${4:-40}
     {
@@ -41,7 +42,7 @@ run 0 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/left.pfm"
 says "same: RMSE 0, PSNR inf dB, SSIM 1, FLIP 0 (at most 0)"; says "0 failing pixels (0 %), 600 pixels ignored"
 run 1 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/right.pfm"; says "600 failing pixels (100 %), 600 pixels ignored"
 run 1 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/white.pfm"; says "600 failing pixels (50 %)"; not_in "$work/out" ignored
-# Grey and white are constant where they are compared: the mean of FLIP is its largest value.
+# In the compared half, grey and white are constant, so the mean of FLIP equals its maximum.
 run 1 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/right.pfm" --json "$work/report.json"
 in_file "$work/report.json" '"compared_pixels": 600'; in_file "$work/report.json" "\"mask\": \"$work/right.pfm\""
 
@@ -77,7 +78,7 @@ claim "heat map and sheet show what a mask ignores"
 run 1 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --heatmap "$work/plain.png" --sheet "$work/plain_sheet.png"
 run 1 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/right.pfm" --heatmap "$work/masked.png" --sheet "$work/masked_sheet.png"
 is_png "$work/masked.png"
-# They differ from those without a mask in the ignored half alone, which was black and now has stripes of grey 96 and 144.
+# With a mask, only the ignored half differs: it was black and now has stripes of grey 96 and 144.
 run 1 "$work/plain.png" "$work/masked.png" --mask "$work/left.pfm" --pixel-tolerance 96; says "largest difference 144"
 run 1 "$work/plain_sheet.png" "$work/masked_sheet.png"; says "largest difference 144 at (92, 0)"
 
@@ -128,7 +129,7 @@ odd=$(printf 'o,d:d 100%%\r\nx|`.pfm')
 cp "$work/a/f_2.pfm" "$work/a/$odd"; cp "$work/b/f_2.pfm" "$work/b/$odd"
 run 1 -q "$work/a" "$work/b" --github --max-failing-pixels 1%
 says '::error file=a/f_2.pfm,title=f_2.pfm%3A different::RMSE 47.72'
-# Of the message only %, CR and LF are escaped.
+# Only %, CR and LF are escaped in the message.
 says '::error file=a/o%2Cd%3Ad 100%25%0D%0Ax|`.pfm,title=o%2Cd%3Ad 100%25%0D%0Ax|`.pfm%3A different::RMSE 47.72'
 says 'failing pixels (50 %25)'
 counts "$work/out" "::error" 2; if [ "$(wc -l <"$work/out")" = 2 ]; then good; else bad "more than two lines"; fi
@@ -170,7 +171,7 @@ run 1 "$work/a" "$work/b" --commands "$work/lines" --html "$work/report.html" --
 counts "$work/report.json" '"command": "draw -o f_%d.pfm"' 2; counts "$work/report.html" '"command":"draw -o f_%d.pfm"' 2; not_in "$work/report.json" other; not_in "$work/out" none.pfm
 run 0 "$work/a" "$work/b" --only f_1.pfm; says "1 image: 1 same"
 run 1 "$work/a" "$work/b" --only f_%d.pfm; says "2 images: 1 same, 1 missing"
-run 0 "$work/a" "$work/b" --only f_1.pfm --mask "$work/masks" # whose mask is another image's
+run 0 "$work/a" "$work/b" --only f_1.pfm --mask "$work/masks" # the mask of another image
 run 3 "$work/a" "$work/b" --only f_3.pfm; one_line; says "--only f_3.pfm: no image of this name"
 run 2 $a $b --only f_1.pfm; one_line; says "is for folders"
 

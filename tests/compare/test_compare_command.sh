@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The command line of tractrix-compare as CI meets it: every exit status, messages, files.
+# The command line of tractrix-compare in CI: every exit status, messages, files.
 . tests/support/claims.sh
 program=$bin/tractrix-compare
 golden=tests/golden

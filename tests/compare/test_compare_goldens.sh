@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/compare-goldens renders, updates, compares, goes on after failures, and keeps what differs.
-# shellcheck disable=SC2016 # nothing shall expand
+# scripts/compare-goldens renders, updates, compares, continues after failures, and keeps images that differ.
+# shellcheck disable=SC2016 # nothing must be expanded
 . tests/support/claims.sh
 TRACTRIX_BIN=$(realpath "$bin")
 export TRACTRIX_BIN

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The page of tractrix-compare --html: what is in the file, then, in a headless Chromium, what a reader does with it.
+# The page of tractrix-compare --html: first the content of the file, then the actions of a reader, in a headless
+# Chromium.
 . tests/support/claims.sh
 . tests/support/browser.sh
 bin=$(realpath "$bin")
@@ -8,18 +9,19 @@ program=$bin/tractrix-compare
 root=$PWD
 golden=$root/tests/golden
 
-# be32 NUMBER: four bytes, the highest first.
+# be32 NUMBER: prints four bytes, the most significant first.
 be32() { env printf "$(printf '%08x' "$1" | sed 's/../\\x&/g')"; }
-# add_text IN OUT KEY TEXT: a PNG file with a text chunk before its pixels: the last of a key counts.
+# add_text IN OUT KEY TEXT: a PNG file with an additional text chunk before its pixels. If a key occurs twice, the last
+# applies.
 add_text() {
     printf 'tEXt%s\0%s' "$3" "$4" >"$work/chunk"
     crc=$(gzip -c "$work/chunk" | tail -c 8 | od -An -N4 -tu4)
     at=$(($(grep -obUaF IDAT "$1" | head -n 1 | cut -d: -f1) - 4))
     { head -c $at "$1" && be32 $(($(wc -c <"$work/chunk") - 4)) && cat "$work/chunk" && be32 "$crc" && tail -c +$((at + 1)) "$1"; } >"$2"
 }
-# add_pfm FILE BYTES: 4 x 1 pixels, the first as its bytes say, the others black.
+# add_pfm FILE BYTES: a picture of 4 x 1 pixels; BYTES are the first pixel, the others are black.
 add_pfm() { { printf 'PF\n4 1\n-1\n' && env printf "$2" && head -c 36 /dev/zero; } >"$1"; }
-# count PATTERN: how often it stands in the page.
+# count PATTERN: the number of times that it occurs in the page.
 count() { grep -oF -- "$1" "$work/report.html" | wc -l; }
 # counts NUMBER PATTERN
 counts() { if [ "$(count "$2")" = "$1" ]; then good; else bad "'$2' stands $(count "$2") times, expected $1"; fi; }
@@ -48,7 +50,8 @@ claim "no text of the data can end its block"
 counts 0 "New </script>"; counts 1 'New \u003c/script>'; counts 0 "<b>&amp;"
 
 claim "equal images stand once"
-# differ 2 and its map, size 2, gone, new, cut's reference, float 2 and its map, and one of each equal pair
+# 13: differ 2 and its map, size 2, gone, new, the reference of cut, float 2 and its map, and one image for each equal
+# pair
 counts 13 '<script type="text/plain" id="image-'
 
 claim "equal images and thumbnails are JPEG, what differs is not, heat maps have palettes"

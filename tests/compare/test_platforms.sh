@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Goldens by platform: where they are sought, with which limits, what --update writes and drops, and that a GPU's image is never
-# silently compared with a CPU's.
+# Goldens by platform: where they are looked for, their limits, what --update writes and removes, and that a GPU's image
+# is never silently compared with a CPU's.
 . tests/support/claims.sh
 unset CI_PROJECT_DIR GITHUB_WORKSPACE GITHUB_STEP_SUMMARY JENKINS_URL TRACTRIX_ASSUME
 program=$(realpath "$bin")/tractrix-compare
 render=$(realpath "$bin")/tractrix-render
 platform=llvmpipe-mesa22.3-llvm15-256-fma-x86_64 other=llvmpipe-mesa24.2-llvm19-128-x86_64
 
-# grey FILE LEVEL: 8 x 8 pixels of one grey, as PFM: 0.5 of the light, or so much that it is LEVEL levels brighter.
+# grey FILE LEVEL: a PFM of 8 x 8 pixels in one grey: 0.5 of the light, brighter by LEVEL levels.
 grey() {
     case $2 in 0) bits='\0\0\0\077' ;; 1) bits='\067\211\001\077' ;; 5) bits='\024\256\007\077' ;; 20) bits='\122\270\036\077' ;; esac
     mkdir -p "$(dirname "$1")"
@@ -82,7 +82,7 @@ compare 0 --platform $other --pixel-tolerance 0
 cp "$g/x_1.pfm" "$g/cpu/x_1.pfm"
 compare 0 --platform $other --update; says "x_1.pfm: same"; none "$g/cpu/x_1.pfm"; is_file "$g/x_1.pfm"
 compare 0 --platform $other; cp "$g/x_1.pfm" "$g/nvidia/x_1.pfm"
-compare 0 --platform nvidia-h100-550 --update; is_file "$g/nvidia/x_1.pfm" # that of all does not count for a GPU
+compare 0 --platform nvidia-h100-550 --update; is_file "$g/nvidia/x_1.pfm" # the golden for all platforms does not apply to a GPU
 
 claim "what a run on a GPU draws goes to a folder of its own, though the CPU's goldens are there"
 printf 'plain assets/curls.tfx --algo none --followers 0 --look plain --size 48x36 --frames 1\n' >"$work/list"

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # The short form of `make torture`: some call sites of each small run fail, one call at a time, and each kind of run is
 # killed twice.
-# Before that: memory of JSON comes from calls that can be made to fail, one or more for each of 1000 numbers.
+# First: JSON memory is allocated by calls that can be made to fail, at least one for each of 1000 numbers.
 set -eu
 bin=${TRACTRIX_BIN:-out/release}
 work=$(mktemp -d)

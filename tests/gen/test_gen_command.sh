@@ -4,7 +4,7 @@
 . tests/support/claims.sh
 program=$bin/tractrix-gen
 
-# refused STATUS MESSAGE ARGUMENT...: one line with the message, and nothing written.
+# refused STATUS MESSAGE ARGUMENT...: the program prints one line with the message and writes nothing.
 refused() {
     wanted=$1 message=$2; shift 2
     run "$wanted" "$@" -o "$work/none"; says "$message"; one_line

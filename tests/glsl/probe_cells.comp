@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// probe_cells.h by a shader, a set of numbers a lane.
+// Evaluates the functions of probe_cells.h in a shader, one set of numbers for each lane.
 #include "probe_cells.h"
 
 layout(local_size_x = 32) in;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernel/cell.h and grain.h give for some numbers, by C and by a shader
+// Results of kernel/cell.h and grain.h for some numbers, for comparison between C and a shader
 // (tests/draw/test_kernel_cells.c).
 #include "kernel/cell.h"
 #include "kernel/grain.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shade_marschner.glsl gives, for tests: a pair of directions a lane, under a light of 1/PI,
-// so that the answer is the density f itself. The fibre runs along y.
+// Evaluates shade_marschner.glsl for tests: a pair of directions for each lane, with a light of
+// 1/PI, so that the result is the density f itself. The fibre runs along y.
 #include "draw/draw.h"
 #include "draw/material.h"
 
@@ -25,7 +25,7 @@ layout(local_size_x = 32) in;
 layout(std430, binding = 0) readonly buffer Directions
 {
     vec4 directions[];
-}; // to the light, to the eye
+}; // towards the light, towards the eye
 layout(std430, binding = 1) writeonly buffer Colors { vec4 colors[]; };
 
 void main()

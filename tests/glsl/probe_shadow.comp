@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// For the tests: how much of light 0 reaches some points.
+// For tests: the share of light 0 that reaches some points.
 #include "draw/shadow.h"
 #include "draw/shadow.glsl"
 
 layout(local_size_x = 8) in;
-layout(location = 0) uniform vec2 fibre; // that the points lie on
+layout(location = 0) uniform vec2 fibre; // the fibre that the points lie on
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
 layout(std430, binding = 1) writeonly buffer Shares { float shares[]; };
 

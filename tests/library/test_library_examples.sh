@@ -18,7 +18,7 @@ claim "the game's loop draws hair in the host's context"
 holds "$work/game_loop" assets/bob.tfx "$work/game.png"
 silent out; silent err
 is_png "$work/game.png"
-# More than the background: PNG packs an even picture into some kB.
+# More than the background alone: PNG compresses an even picture to a few kB.
 holds test "$(wc -c <"$work/game.png")" -gt 8000
 
 claim "the same in the context of a window, by GLX"

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What the library shows and what it calls: names of tractrix.h and no others; nothing that prints, ends a program, handles
-# signals or starts processes.
+# The symbols that the library exports and calls: it exports the names of tractrix.h and no others, and calls nothing
+# that prints, ends a program, handles signals or starts processes.
 . tests/support/claims.sh
 library=$bin/lib/libtractrix.so.0
 
-# Where a sanitizer is linked in, its own calls are there, too.
+# A sanitizer that is linked in makes calls of its own.
 if grep -q fsanitize "$bin/flags"; then echo "a sanitizer's library calls what it likes: skipped"; exit 77; fi
 
 sed -n 's/^[^ /#].*[ *]\(tractrix_[a-z_]*\)(.*/\1/p' src/library/tractrix.h | sort >"$work/declared"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/benchmark-stamp on a copy of the solvers: figures that are older than the solvers or the defaults are noticed;
-# comments, help texts and drawing do not count; a reason that is written down does.
+# scripts/benchmark-stamp on a copy of the solvers: it notices figures that are older than the solvers or the defaults.
+# It ignores comments, help texts and drawing, and accepts a stated reason.
 # shellcheck disable=SC2016 # $ of sed
 . tests/support/claims.sh
 program=scripts/benchmark-stamp
@@ -12,14 +12,14 @@ cp -r glsl/sim glsl/common "$TREE/glsl"
 cp -r src/sim "$TREE/src"
 cp src/base/params.def "$TREE/src/base"
 
-# change FILE SED: edits the file of the copy; a pattern that fits nothing is a failure of the test.
+# change FILE SED: edits the file of the copy; the test fails if the pattern matches nothing.
 change() {
     cp "$TREE/$1" "$work/before"
     sed -i "$2" "$TREE/$1"
     if cmp -s "$work/before" "$TREE/$1"; then bad "sed does not change $1: $2"; fi
 }
 back() { cp "$work/before" "$TREE/$1"; }
-# stale FILE SED: the check fails after that change, and holds once it is taken back.
+# stale FILE SED: the check must fail after this change, and pass once it is undone.
 stale() {
     change "$1" "$2"
     run 1 check; says "solvers or defaults changed since the figures of docs/benchmarks.md (on 2026-11-25 at commit abc)"; silent out

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/blender_hair.py in Blender: strands both ways, particle hair, an Alembic groom's way through a simulation and
-# back, the head, camera and lights, the add-on, errors. One process of Blender runs all steps (blender_steps.py).
+# scripts/blender_hair.py in Blender: strands in both directions, particle hair, an Alembic groom through a simulation
+# and back, the head, camera and lights, the add-on, errors. One Blender process runs all steps (blender_steps.py).
 . tests/support/claims.sh
 program=${BLENDER:-blender}
 if ! command -v "$program" >/dev/null; then
@@ -13,7 +13,7 @@ if ! "$program" -b --factory-startup --python-exit-code 9 --python-expr 'import 
     exit 77
 fi
 export BLENDER_USER_SCRIPTS="$work/scripts" BLENDER_USER_CONFIG="$work/config"
-# hair STATUS ARGUMENT...: the script's exit status, without Blender's own lines on standard output.
+# hair STATUS ARGUMENT...: checks the script's exit status; removes Blender's own lines from standard output.
 hair() {
     status=$1; shift
     run "$status" -b --factory-startup --python scripts/blender_hair.py -- "$@"

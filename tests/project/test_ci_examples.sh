@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# action.yml and examples/ci/ without their servers: the files' structure, and their very shell steps in copies of the
-# project, with the environment that GitHub and GitLab set. Programs are not built again: `make` and `git` are stand-ins.
+# action.yml and examples/ci/ without their servers: checks the files' structure, and runs their shell steps in copies
+# of the project with the environment that GitHub and GitLab set. Programs are not built again: `make` and `git` are
+# stubs.
 # shellcheck disable=SC2016 # text of scripts
 . tests/support/claims.sh
 programs=$(realpath "$bin")
@@ -18,7 +19,7 @@ if ! python3 -c 'import yaml' 2>/dev/null; then
 fi
 if [ "$(cat examples/ci/goldens/*.png | wc -c)" -lt 100000 ]; then good; else bad "goldens of 100 kB or more"; fi
 
-# A checkout of Tractrix as a server has it, and one of a project that uses it.
+# A checkout of Tractrix as on a server, and a checkout of a project that uses it.
 mkdir "$work/action" "$work/repo" "$work/stubs" "$work/steps" "$work/runner"
 cp -r action.yml Makefile scripts src glsl assets "$work/action"
 cp -r assets examples "$work/repo"
@@ -35,8 +36,8 @@ for last; do :; done
 [ "\$1" != clone ] || cp -r "$work/action" "\$last"
 END
 printf '#!/bin/sh\necho "apt-get $*" >>"%s/calls"\n' "$work" >"$work/stubs/apt-get"
-# A false gh: releases are in $work/releases/WHO/NAME/TAG, attestations are lines FILE WHO/NAME REF of $work/attested, what the
-# server says is in $work/server, by the path of the call; what is sent goes to $work/sent.
+# A stub of gh. Releases are in $work/releases/WHO/NAME/TAG, attestations are lines "FILE WHO/NAME REF" of
+# $work/attested, the server's answers are in $work/server, by the path of the call; sent data goes to $work/sent.
 cat >"$work/stubs/gh" <<END
 #!/bin/bash
 echo "gh \$*" >>"$work/calls"
@@ -59,7 +60,7 @@ api\ *)
     jq -r "\$filter" "$work/server/\$(basename "\${path%%\\?*}").json" ;;
 esac
 END
-# A false curl: GET gives $work/server/notes.json, with a token only.
+# A stub of curl: GET returns $work/server/notes.json, but only with a token.
 cat >"$work/stubs/curl" <<END
 #!/bin/bash
 grep -q 'PRIVATE-TOKEN: secret' || exit 22
@@ -74,14 +75,14 @@ chmod +x "$work/stubs/"*
 mkdir "$work/server"
 real=$(command -v git)
 PATH=$work/stubs:$PATH
-# Small images: one that passes, and one whose golden is of other hair.
+# Small images: one that passes, and one whose golden shows other hair.
 fur='assets/fur.tfx --algo none --followers 0 --look plain --size 48x36 --frames 1'
 printf 'good %s\n' "$fur" >"$work/repo/one.txt"
 printf 'good %s\nwrong %s --color #ff0000\nlost nowhere.tfx\n' "$fur" "$fur" >"$work/repo/three.txt"
 holds env TRACTRIX_BIN="$programs" scripts/compare-goldens "$work/repo/one.txt" "$work/repo/references" "$work/images" --update
 cp "$work/repo/references/good.png" "$work/repo/references/wrong.png"
 
-# github INPUT=VALUE...: takes the steps out of the action.
+# github INPUT=VALUE...: extracts the steps of the action.
 github() { holds "$steps" github "$work/action/action.yml" "$work/steps" "$@"; }
 # step STATUS NAME: runs a step as the runner does.
 step() {
@@ -129,7 +130,7 @@ echo >>"$release/$archive"; refused "$archive is not the file of SHA256SUMS"
 (cd "$release" && tar -czf "$archive" -C "$programs/.." --transform "s,^,x/bin/," "$(basename "$programs")/tractrix-gen" && sha256sum "$archive" >SHA256SUMS)
 refused "$archive does not run here, or is another version"
 ACTION_REPOSITORY=who/else; refused "who/else has no"
-# Where GitHub leaves both empty, the action's own path has them.
+# If GitHub leaves both empty, they are taken from the action's path.
 ACTION_REPOSITORY='' ACTION_REF=''
 mkdir -p "$work/_actions/who/hair"; cp -r "$work/action" "$work/_actions/who/hair/v9.9.9"
 holds env GITHUB_OUTPUT="$work/runner/output" RUNNER_TEMP="$work/runner" "$work/_actions/who/hair/v9.9.9/scripts/action" release; says "who/hair has no tractrix-9.9.9"
@@ -187,7 +188,7 @@ if "$steps" workflow "$work/bad.yml" action.yml 2>/dev/null >&2; then bad "a wor
 claim "the workflow says what to do"
 (export FAILED=2 IMAGES=3; step 0 say-what-to-do; says "2 of 3 images failed"; echo "$failed" >"$work/failed"); if [ "$(cat "$work/failed")" = "$failed" ]; then good; else bad "see above"; fi
 
-# comment STATUS: runs the step of github-comment.yml on the images that the step before has left.
+# comment STATUS: runs the step of github-comment.yml on the images that the previous step has left.
 comment() {
     rm -f "$work/sent" "$work/sent.call"
     expected=$1
@@ -238,7 +239,7 @@ old=$work/old; "$real" clone --quiet "$work/pictures.git" -b pictures "$old"; mk
 "$real" -C "$old" add -A
 tip=$("$real" -C "$old" -c user.name=tractrix -c user.email=tractrix@localhost commit-tree "$("$real" -C "$old" write-tree)" -m "Images of x")
 "$real" -C "$old" push --quiet --force origin "$tip:pictures"
-# Another run pushes between this one's question and its push: it tries again.
+# Another run pushes between this run's query and its push: it tries again.
 printf '#!/bin/sh\n[ ! -e once ] || { rm once; exit 1; }\n' >"$work/pictures.git/hooks/pre-receive"; chmod +x "$work/pictures.git/hooks/pre-receive"
 touch "$work/pictures.git/once"
 comment 0; none "$work/pictures.git/once"
@@ -306,7 +307,7 @@ in_file "$work/repo/tractrix-images/report.xml" "[[ATTACHMENT|tractrix-images/sh
 
 claim "GitLab's merge request gets a note, which is edited"
 command -v jq >/dev/null || { skip "no jq" && finish; }
-# note: the job's after_script.
+# note: runs the job's after_script.
 note() {
     rm -f "$work/sent" "$work/sent.call"
     (cd "$work/repo" && exec env CI_PROJECT_DIR="$work/repo" TRACTRIX_DIR=.tractrix CI_API_V4_URL=https://gitlab.example/api/v4 CI_PROJECT_ID=5 CI_JOB_URL=https://gitlab.example/me/p/-/jobs/9 "$@" \

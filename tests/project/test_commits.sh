@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/check-commits finds each kind of fault in a message, and none in good ones.
+# scripts/check-commits finds each kind of fault in a commit message, and none in good messages.
 . tests/support/claims.sh
 program=$work/here/scripts/check-commits
 mkdir -p "$work/here/src" "$work/here/scripts" && cp scripts/check-commits "$work/here/scripts/"
@@ -12,7 +12,7 @@ says 'no git history'
 
 git init -q . && git config user.name Somebody && git config user.email somebody@localhost
 
-# commits LINES MESSAGE: a commit that changes so many lines of src.
+# commits LINES MESSAGE: makes a commit that changes this many lines of src.
 commits() {
     seq "$1" >src/a.c
     git add . && git commit -q --allow-empty -m "$2"

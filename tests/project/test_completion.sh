@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Completion of all programs in bash, zsh and fish: every shell is asked what it offers for a line.
+# Completion of all programs in bash, zsh and fish: every shell is asked for its completions of a line.
 . tests/support/claims.sh
 shells=$work/shells
 mkdir -p "$shells/bash" "$shells/zsh" "$shells/fish" "$work/home"
@@ -15,7 +15,7 @@ for name in farm turntable compare-goldens; do
     scripts/help-pages fish "$bin/tractrix-$name" 0 >"$shells/fish/tractrix-$name.fish"
 done
 
-# What a shell offers for LINE, one a line. bash gets the words that its line editor would make of it: '=' is one.
+# The completions of LINE, one on each line. bash gets the words as its line editor would split them: '=' is a word.
 ask_bash() {
     # shellcheck disable=SC2016 # for the inner bash
     bash --norc -c 'source "$1"/"${2%% *}"; compopt() { :; }
@@ -28,7 +28,7 @@ ask_fish() {
     HOME=$work/home fish --no-config -c 'set fish_complete_path $argv[1]; complete -C $argv[2]' "$shells/fish" "$1" | cut -f1 | sed 's/^--[a-z-]*=//'
 }
 
-# offers LINE [WORD...]: every shell shall offer these words, and no others. They are asked at the end.
+# offers LINE [WORD...]: every shell must offer exactly these words. The shells are asked at the end.
 lines=0
 offers() {
     lines=$((lines + 1))
@@ -38,8 +38,8 @@ offers() {
     for word in "$@"; do echo "$word"; done | sort >"$work/expected.$lines"
 }
 
-# compare SHELL NUMBER: what it offers is in $work/out. Files come with or without their folder, and folders with or without a
-# slash.
+# compare SHELL NUMBER: its completions are in $work/out. Files may come with or without their folder, folders with or
+# without a slash.
 compare() {
     sed 's|/$||; s|.*/||; /^$/d' "$work/out" | sort -u >"$work/offered"
     claim="$1: $(cat "$work/claim.$2")"

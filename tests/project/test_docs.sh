@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs the examples of the pages in docs/, the blocks marked sh, with smaller images and fewer frames. The tutorial has
-# a test of its own.
+# Runs the examples of the pages in docs/ (blocks marked sh) with smaller images and fewer frames. The tutorial has its
+# own test.
 . tests/support/checkout.sh
 
 make_checkout

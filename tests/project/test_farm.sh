@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Frames from many processes equal those of one, to the byte: shares by --part, and scripts/farm with each of its runners.
-# Lost frames are found and drawn. `make check-farm` installs what the runners need.
+# Frames from many processes equal those of one process, to the byte: shares by --part, and scripts/farm with each of
+# its runners. Lost frames are found and drawn. `make check-farm` installs the runners.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 scene="assets/gust.json --look plain --frames 7 --size 64x48"
 same() { if diff -r "$work/one" "$1" >"$work/out" 2>"$work/err"; then good; else bad "$1 differs from one process's"; fi; }
-# farm ARGUMENT...: with the tests' program.
+# farm ARGUMENT...: runs the farm with the test's program.
 farm() {
     if TRACTRIX_RENDER=$program scripts/farm "$@" >"$work/out" 2>"$work/err" </dev/null; then good; else bad "scripts/farm $*"; fi
 }
@@ -59,7 +59,7 @@ same "$work/plain"
 claim "GPUs are shared out among the parts"
 cat >"$work/gpus" <<END
 #!/bin/sh
-# A machine with three GPUs, one of which cannot be used; --device is noted and left out.
+# A machine with three GPUs, one of which cannot be used. --device is logged and removed.
 for word do
     shift
     case \$word in
@@ -77,7 +77,7 @@ done
 exec "$program" "\$@"
 END
 chmod +x "$work/gpus"
-# taken LIST OPTION...: the devices that four parts take, one after the other.
+# taken LIST OPTION...: the devices that four parts use, in order.
 taken() {
     list=$1
     shift

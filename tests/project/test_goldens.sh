@@ -2,22 +2,22 @@
 # SPDX-License-Identifier: MIT
 # Compares small images with tests/golden/.
 #
-#   pixel tolerance 2        of 255 levels: a pixel that differs by no more counts as equal
-#   max failing pixels 0.5%  of the pixels may differ by more
+#   pixel tolerance 2        levels of 255: a pixel that differs by no more counts as equal
+#   max failing pixels 0.5%  share of the pixels that may differ by more
 #
-# Where the driver that made them draws (tests/golden/renderer), whatever CPU it runs on: measured with every set of
-# instructions that it knows (scripts/goldens-by-cpu), 1 level in 0.01 % of the pixels at most. Other drivers round
-# differently (a hair's edge in a neighbouring pixel): there 8 levels and 2 %, which is said.
+# These limits apply to the driver that made the goldens (tests/golden/renderer), on any CPU. Measured with every set of
+# instructions that it knows (scripts/goldens-by-cpu), at most 0.01 % of the pixels differ by 1 level. Other drivers
+# round differently (a hair's edge in a neighbouring pixel): they have 8 levels and 2 %, which the test prints.
 #
-# The test also proves that it can fail: no golden matches another one of its size. What was rendered, and heat maps of what differs,
-# stay in goldens/ beside the programs. scripts/update-goldens renders the goldens anew.
+# The test also proves that it can fail: no golden matches another one of its size. Rendered images, and heat maps of
+# those that differ, stay in goldens/ beside the programs. scripts/update-goldens renders the goldens again.
 set -u
 bin=${TRACTRIX_BIN:-out/release}
 golden=tests/golden
 TRACTRIX_BIN=$bin
 export TRACTRIX_BIN
 
-# The driver's name without the width of its vectors, which depends on the CPU.
+# The driver's name without its vector width, which depends on the CPU.
 driver() { head -n 1 "$1" | sed -E 's/^.{18}//; s/, [0-9]+ bits//'; }
 limits="--pixel-tolerance 2 --max-failing-pixels 0.5%"
 devices=$(mktemp)
@@ -36,7 +36,7 @@ passed=$(echo "$lines" | grep -c ': same: ')
 failed=$(echo "$lines" | grep -cE ': (different|size mismatch|missing|unrendered|unreadable|failed): ')
 [ $status = 0 ] || [ "$failed" -gt 0 ] || failed=1
 
-# The threshold tells the goldens themselves apart.
+# The limits tell the goldens themselves apart.
 for a in curls_still curls_split curls_thesis; do
     for b in curls_split curls_thesis fur_wind; do
         [ $a = $b ] && continue

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/gpu-report, by the CPU driver: what it measures stands in its page and its JSON, what fails too.
+# scripts/gpu-report with the CPU driver: its page and its JSON have the measurements, and the failures.
 . tests/support/claims.sh
 if ! command -v python3 >/dev/null; then skip 'no python3'; finish; fi
 program=scripts/gpu-report
 
-# The programs, but images are simple ones.
+# The programs, with a wrapper that draws simple images.
 mkdir "$work/bin"
 ln -s "$(realpath "$bin")"/* "$work/bin/"
 rm "$work/bin/tractrix-render"
@@ -14,7 +14,7 @@ chmod +x "$work/bin/tractrix-render"
 measure() { status=$1; shift; run "$status" --programs "$work/bin" -o "$work/report" --size 48x36 --scenes '^curls' --tests gpu_dispatch --sets 1k16 "$@"; }
 
 # shellcheck disable=SC2317 # holds calls it
-# known EXPRESSION: what Python makes of it, of the report `k`.
+# known EXPRESSION: evaluates it in Python; `k` is the report.
 known() { python3 -c "import json; k = json.load(open('$work/report/gpu-report.json')); assert $1, k"; }
 
 claim "images by three rasterisers, their differences, solvers and tests"

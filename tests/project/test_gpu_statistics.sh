@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/gpu-statistics on shaders of its own: one that fits, one that needs scratch memory, one with few waves, one that
-# is no GLSL; a machine without its packages.
+# scripts/gpu-statistics on made-up shaders: one that fits, one that needs scratch memory, one with few waves, one that
+# is not GLSL; and on a machine without the packages.
 . tests/support/claims.sh
 program=scripts/gpu-statistics
 sources=$work/sources
 mkdir "$sources"
-# shader NAME STATEMENTS: the rest of a lane that has `texels` to fetch from.
+# shader NAME STATEMENTS: a shader with these statements for a lane, which can fetch from `texels`.
 shader() {
     cat >"$sources/$1.0123456789abcdef.comp" <<END
 #version 430 core
@@ -23,7 +23,7 @@ void main()
 }
 END
 }
-# wide COUNT: so many numbers at once, as each is scaled by the sum of all.
+# wide COUNT: statements that need this many numbers at once, because each is scaled by the sum of all.
 wide() {
     seq "$1" | sed 's/.*/float a& = texelFetch(texels, lane + 64 * &).x;/'
     printf 'float sum = 0.0'; seq "$1" | sed 's/^/ + a/' | tr -d '\n'; echo ';'

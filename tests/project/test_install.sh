@@ -1,13 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Tests `make install`: files in their places, programs that work without the checkout, manual pages,
-# versions, and shaders read from a folder.
+# `make install`: files in their places, programs that work without the checkout, manual pages, versions, and shaders
+# read from a folder.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 bin_here=$(realpath "$bin")
 root=$work/root share=$work/root/usr/share
 
-# The programs are there, built by who runs the tests; told of the same flags, make takes them as they are.
+# The programs have been built by whoever runs the tests; with the same flags, make does not build them again.
 same="OUT=$(realpath --relative-to=. "$bin")" compiler=$(sed 's/ -std=.*//; q' "$bin/flags")
 if grep -q fsanitize "$bin/flags"; then same="$same CONFIG=sanitize"; else same="$same CONFIG=release"; fi
 if grep -q -- -Werror "$bin/flags"; then same="$same WERROR=1"; else same="$same WERROR="; fi
@@ -29,7 +29,7 @@ holds test "$(readlink "$root/usr/lib/libtractrix.so")" = libtractrix.so.0
 for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/look.md doc/tractrix/docs/notes/solvers.md tractrix/demo.json tractrix/scene.schema.json; do
     is_file "$share/$file"
 done
-# Every example of the checkout, programs as such.
+# Every example of the checkout; programs must be executable.
 for file in $(git ls-files examples 2>/dev/null); do equal "$file" "$share/doc/tractrix/$file"; done
 
 claim "an installed program needs nothing of the checkout"
@@ -51,14 +51,14 @@ for name in farm turntable compare-goldens; do
     run 0 --version; says "tractrix-$name $(sed -n 's/.*TRACTRIX_VERSION "\(.*\)"/\1/p' "$bin_here/version.h")"; silent err
     run 0 --help; says "Usage: tractrix-$name "; silent err
 done
-# Scenes of the docs find the assets.
+# The scenes of the docs find the assets.
 program=$root/usr/bin/tractrix-render
 run 0 "$share/doc/tractrix/docs/floor.json" --check
 program=$root/usr/bin/tractrix-render
 cd - >/dev/null || exit 1
 is_file "$work/installed/frame_0000.png"; is_file "$work/turn/fur/frame_0000.png"; is_file "$work/farm/frame_0001.png"; is_file "$work/goldens/fur.png"
 
-# The sanitizers' libraries would have to be loaded first.
+# With sanitizers, their libraries would have to be loaded first.
 claim "30 lines of C against the installed library draw what tractrix-render draws"
 if grep -q fsanitize "$bin/flags"; then
     skip "libraries of a sanitizer's build"
@@ -95,7 +95,7 @@ done
 claim "make uninstall leaves no file behind"
 installs uninstall
 holds test -z "$(find "$root" ! -type d)"
-# Folders of the project and of completions, too; those of every system stay.
+# Folders of the project and of completions are removed, too; folders of the system stay.
 holds test "$(cd "$root" && find . -type d | sort | tr '\n' ' ')" = ". ./usr ./usr/bin ./usr/include ./usr/lib ./usr/lib/pkgconfig ./usr/share ./usr/share/doc ./usr/share/man ./usr/share/man/man1 "
 
 claim "the version sorts as Debian's do"

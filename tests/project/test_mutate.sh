@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# scripts/mutate over a made-up project of two sources, whose tests are scripts that look for what the sources should say.
+# scripts/mutate on a made-up project of two sources, whose tests are scripts that search the sources for certain texts.
 . tests/support/claims.sh
 if ! command -v python3 >/dev/null || ! command -v git >/dev/null; then echo 'skipped: python3 and git are needed'; exit 77; fi
 tree=$work/tree
@@ -14,7 +14,7 @@ printf 'all:\n\t@! grep -q "x <;" src/base/a.c || { echo "a.c: error: no number"
 printf 'if (x < 10) y = 2;\nz = 3;\nz += 4;\nw = 5;\n' >"$tree/src/base/a.c"
 printf 'float f = 1.0;\nfloat g = 2.0;\n' >"$tree/glsl/sim/b.comp"
 
-# script NAME LINE...: a test.
+# script NAME LINE...: makes a test.
 script() {
     name=$1; shift
     { echo '#!/bin/sh'; printf '%s\n' "$@"; } >"$tree/tests/$name"
@@ -26,7 +26,7 @@ script base/test_room.sh 'grep -q "z = 3" src/base/a.c'
 script sim/test_b.sh 'grep -q "f = 3.0" glsl/sim/b.comp && { echo "glsl/sim/b.comp:1: error: syntax"; exit 1; }' 'grep -q "f = 1.0" glsl/sim/b.comp'
 script sim/test_broken.sh 'exit 1'
 
-# list LINE...: tests/mutants.txt; results of other lists are forgotten.
+# list LINE...: writes tests/mutants.txt and removes results of earlier lists.
 list() { rm -rf "$tree/out"; printf '%s\n' "$@" >"$tree/tests/mutants.txt"; }
 first='src/base/a.c: test_a.sh'
 second='glsl/sim/b.comp: test_b.sh'
@@ -82,7 +82,7 @@ run 1; says "test_broken.sh: failed without a fault"; says "(not passing without
 script base/test_a.sh "$ten" "$seven"
 claim "an interrupt leaves nothing behind, and the next run goes on"
 list "$first" '- < 10' '+ <= 10' '' "$first" '- y = 2' '+ y = 7'
-"$program" --seed 5 >"$work/out" 2>"$work/err" & # which tries the first fault first
+"$program" --seed 5 >"$work/out" 2>"$work/err" & # it tries the first fault first
 for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
     if grep -q ' 1/2 ' "$work/out"; then break; fi
     sleep 0.2
@@ -93,7 +93,7 @@ status=$?
 if [ "$status" = 130 ]; then good; else bad "status $status"; fi
 says "interrupted; the next run goes on"
 no_files "$TMPDIR"
-mkdir "$TMPDIR/tractrix-mutate-4194305-killed" # beyond all processes
+mkdir "$TMPDIR/tractrix-mutate-4194305-killed" # larger than any process number
 run 0 --limit 3; says "1 faults were tried before"
 no_files "$TMPDIR"
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs the examples of README.md, its block marked sh, with smaller images and fewer frames.
+# Runs the examples of README.md (its block marked sh) with smaller images and fewer frames.
 . tests/support/checkout.sh
 
 command -v ffmpeg >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }

@@ -1,17 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The programs that are scripts end at once when they are asked to, with status 130, and take all of their processes along,
+# The programs that are scripts end at once when they receive a signal, with status 130, and end all of their processes,
 # whatever these are doing and whatever process groups they have made (scripts/steps.sh).
 . tests/support/claims.sh
 here=$work/here
 mkdir "$work/fake"
-# A program as slow as can be that starts others, in process groups of their own, and goes on when it is only asked once.
+# A very slow program that starts others in their own process groups, and continues after the first signal.
 cat >"$work/fake/tractrix-render" <<END
 #!/bin/bash
 case "\$*" in *--version*) exec "$bin/tractrix-render" --version ;; esac
 trap : TERM INT HUP
 set -m
-sleep 300.125 & # a group of its own
+sleep 300.125 & # in its own process group
 echo started >>"$work/started"
 wait || wait || wait
 END
@@ -19,13 +19,13 @@ cp "$work/fake/tractrix-render" "$work/fake/parallel"
 chmod +x "$work/fake/"*
 for program in compare gen convert bench; do ln -s "$(realpath "$bin")/tractrix-$program" "$work/fake/"; done
 
-# left: processes that have the test's folder among their words, or are the fake program's.
+# left: processes that have the test's folder in their arguments, or belong to the fake program.
 left() {
     set -- /proc/[0-9]*/cmdline
     printf '%s\n300.125\n' "$work" | grep -aslFf - "$@"
 }
 
-# ends SIGNAL SCRIPT ARGUMENT...: the signal comes when a first process has started.
+# ends SIGNAL SCRIPT ARGUMENT...: sends the signal when the first process has started.
 ends() {
     signal=$1; shift
     rm -rf "$here" "$work/started"; mkdir "$here"

@@ -7,7 +7,7 @@ turns=$work/turns
 export TRACTRIX_BIN="$bin" TURNTABLE_OUT="$turns" TURNTABLE_S=0.5
 small="--size 64x48 --quality draft --preroll 0.1"
 
-# stream FILE EXPECTED: codec, size, kind of pixels and frames as ffprobe has them.
+# stream FILE EXPECTED: compares codec, size, pixel format and frames, as ffprobe reports them.
 stream() {
     got=$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=codec_name,width,height,pix_fmt,nb_read_frames "$turns/$1")
     if [ "$got" = "$2" ]; then good; else bad "$1: $got, expected $2"; fi

@@ -29,7 +29,7 @@ def test_one_pixel_is_found(image):
     assert not tractrix.compare(other, image, pixel_tolerance=9).same
     assert tractrix.compare(other, image, max_failing_percent=0.2).same
     assert not tractrix.compare(other, image, max_failing_percent=0.1).same
-    assert tractrix.compare(other, image, max_flip=0.5).same  # alone, it is the only limit
+    assert tractrix.compare(other, image, max_flip=0.5).same  # without other limits it is the only one
     assert not tractrix.compare(other, image, max_flip=0.5, pixel_tolerance=0).same
     assert not tractrix.compare(other, image, max_flip=0, pixel_tolerance=20).same and tractrix.compare(image, image, max_flip=0).same
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# ctypes checks no types: what _declarations.py says is what tractrix.h says, member by member, argument by argument.
+# ctypes checks no types: _declarations.py must agree with tractrix.h, member by member, argument by argument.
 import ctypes
 import re
 
@@ -27,7 +27,7 @@ def type_of(words, stars):
     elif words in SCALARS:
         kind = SCALARS[words]
     else:
-        kind = getattr(_declarations, words.replace("Tractrix", "", 1), ctypes.c_int)  # else an enum
+        kind = getattr(_declarations, words.replace("Tractrix", "", 1), ctypes.c_int)  # otherwise an enum
     for _ in range(stars):
         kind = ctypes.POINTER(kind)
     return kind

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# The first picture of docs/python.md, in at most ten lines of code, smaller.
+# The first picture of docs/python.md, in at most ten lines of code, drawn smaller.
 import re
 
 import tractrix

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The pytest plugin: goldens are found by the test's name, nothing approves itself, and what differs is shown on a page.
+# The pytest plugin: goldens are found by the test's name, no golden is accepted automatically, and a page shows
+# differences.
 import numpy as np
 import pytest
 
@@ -70,7 +71,7 @@ def test_an_image_that_differs_fails_with_figures_and_a_page(suite):
     assert "test_hair.test_plain" in page
     suite.write_test("picture()")
     suite.runpytest().assert_outcomes(passed=1)
-    assert not (suite.path / "tractrix-results/tractrix-pairs/report.html").exists()  # nothing of an earlier run stays
+    assert not (suite.path / "tractrix-results/tractrix-pairs/report.html").exists()  # the page of an earlier run is removed
 
 
 def test_alpha_counts(suite):
@@ -85,7 +86,7 @@ def test_limits_and_masks_are_those_of_compare(suite):
                   "picture(104), mask=np.zeros((16, 16), np.uint8)"):
         suite.write_test(image)
         passed = suite.runpytest()
-        if "mask" in image:  # a mask that hides all is refused
+        if "mask" in image:  # a mask that hides everything is refused
             passed.assert_outcomes(failed=1)
         else:
             passed.assert_outcomes(passed=1)
@@ -129,7 +130,7 @@ def test_every_test_class_parameter_and_name_has_its_golden(suite):
             tractrix_image.check(image, name="x")
             tractrix_image.check(image, name="x")
     """)
-    for _ in range(5):  # a failing check ends its test
+    for _ in range(5):  # because a failing check ends its test
         suite.runpytest("--tractrix-update")
     result = suite.runpytest()
     result.assert_outcomes(passed=2, failed=1)

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The Python module from its wheel, in a virtual environment of its own and without a network: pytest runs tests/python/.
+# The Python module from its wheel, in a separate virtual environment and without network: pytest runs tests/python/.
 . tests/support/claims.sh
 python=/usr/bin/python3
 [ -x $python ] || python=python3

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# render(): images of arrays and of files, the same as tractrix-render's.
+# render(): images of arrays and of files equal those of tractrix-render.
 import inspect
 import os
 import re
@@ -43,7 +43,7 @@ def test_a_view_replaces_the_camera(curls):
     image = tractrix.render(strand, unit="m", size=(41, 41), view=(to_eye, projection), background="transparent", radius=0.05, algo="none", look="plain")
     columns = np.flatnonzero(image[:, :, 3].max(axis=0))
     assert abs(columns.mean() - 20) <= 0.5
-    assert image[10, 20, 3] and not image[30, 20, 3]  # up is up
+    assert image[10, 20, 3] and not image[30, 20, 3]  # y is up
 
 
 def test_colors_of_vertices_are_seen(curls):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# simulate() and Simulation: positions of strands in the form that they came in, moved by frames, poses and meshes.
+# simulate() and Simulation: positions of strands in the form of the input, moved by frames, poses and meshes.
 import gc
 import threading
 import weakref

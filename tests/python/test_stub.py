@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Types: the stub is that of the table of parameters, and a type checker finds mistakes by it.
+# Types: the stub agrees with the table of parameters, and a type checker finds mistakes with it.
 import os
 import shutil
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Parameters as keywords: each value becomes the text that a flag has.
+# Parameters as keywords: each value becomes the text of a flag.
 import pathlib
 
 import numpy as np

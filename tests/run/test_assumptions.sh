@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Devices that are imitated (TRACTRIX_ASSUME, --assume-hardware): few work groups side by side change no byte, decisions as
-# on a GPU draw the same picture, and so does a driver that rounds otherwise.
+# Imitated devices (TRACTRIX_ASSUME, --assume-hardware): a low limit of work groups changes no byte, decisions as on a
+# GPU draw the same picture, and so does a driver that rounds differently.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 # Every pass: followers, collisions with shapes and the mesh's field, volume, wind, sleep, shadows, light among hair, a floor.
@@ -37,7 +37,8 @@ for raster in blocks quads compute; do
     export TRACTRIX_ASSUME
     draw "tiles_$raster" --raster $raster
     unset TRACTRIX_ASSUME
-    # Positions within a tile round otherwise than in the image: one level, at a mesh's edge a few.
+    # Positions relative to a tile are rounded differently than in the image: one level of difference, a few at a mesh's
+    # edge.
     holds "$bin/tractrix-compare" -q --pixel-tolerance 1 --max-failing-pixels 0.2% "$work/many_$raster" "$work/tiles_$raster"
 done
 

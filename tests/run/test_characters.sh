@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Bodies that deform, through whole runs of tractrix-render.
+# Bodies that deform, in whole runs of tractrix-render.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 hair=assets/demo.tfx
@@ -52,7 +52,7 @@ run 0 assets/curls.tfx --mesh "$work/far/x_%d.obj" --frames 1 --size 32x24 -q -o
 cp assets/ball.obj "$work/far/x_999999999.obj"
 run 3 assets/curls.tfx --mesh "$work/far/x_%d.obj" --frames 1 --size 32x24 -q -o "$work/far.png"; one_line
 says "x_20240102.obj: missing: expected files for samples 20240101 to 999999999 without gaps"
-# shellcheck disable=SC2002 # a pipe is what is tested
+# shellcheck disable=SC2002 # the test needs a pipe
 cat assets/ball.obj | "$program" assets/curls.tfx --mesh /dev/stdin --frames 1 --size 32x24 -q -o "$work/piped.png" 2>"$work/err"
 run 0 assets/curls.tfx --mesh assets/ball.obj --frames 1 --size 32x24 -q -o "$work/named.png"
 same_images "$work/piped.png" "$work/named.png"

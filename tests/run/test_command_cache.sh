@@ -7,7 +7,7 @@ hair=assets/fur.tfx
 plain="--look plain --followers 0"
 
 claim "a cache plays back what was simulated: any frames, the same pictures, in several processes at once"
-scene="assets/demo.json --look plain --followers 1 --preroll 0.1 --sdf-resolution 32 --size 48x32 --frames 12" # followers that keep out of the mesh, which a cache does not hold
+scene="assets/demo.json --look plain --followers 1 --preroll 0.1 --sdf-resolution 32 --size 48x32 --frames 12" # followers avoid the mesh, which is not part of a cache
 # shellcheck disable=SC2086
 {
 run 0 $scene -q --cache "$work/a.cache" -o "$work/direct/"
@@ -40,11 +40,11 @@ printf 'x' | dd of="$work/flip.cache" bs=1 seek=$size conv=notrunc 2>/dev/null
 run 3 $scene -q --from-cache "$work/flip.cache" -o "$work/flip/"; one_line; says "flip.cache: frame"; says "checksum"
 }
 flipped=$(sed -n 's/.*flip.cache: frame \([0-9]*\),.*/\1/p' "$work/err")
-for last in $((flipped - 1)) $flipped; do # frames that were drawn before it are there, and whole
+for last in $((flipped - 1)) $flipped; do # frames before the damaged one were drawn completely
     name=$(printf frame_%04d.png "$last")
     if [ "$last" = "$flipped" ]; then none "$work/flip/$name"; else equal "$work/flip/$name" "$work/direct/$name"; fi
 done
-for to in flip.y4m sheet.png; do # but no video or sheet that lacks the rest
+for to in flip.y4m sheet.png; do # but no incomplete video or sheet
     sheet=; [ $to = flip.y4m ] || sheet="--contact-sheet 4x3"
     # shellcheck disable=SC2086
     run 3 $scene -q --from-cache "$work/flip.cache" $sheet -o "$work/$to"; one_line; says "flip.cache: frame $flipped,"
@@ -59,7 +59,7 @@ claim "a file that is no cache stays as it is, and a full disk is said as such, 
 cp "$hair" "$work/own.tfx"
 run 1 "$hair" -q --frames 2 --cache "$work/own.tfx"; one_line; says "is no cache"
 if cmp -s "$hair" "$work/own.tfx"; then good; else bad "the file was changed"; fi
-for out in --cache --export; do # the limit of a file's size stands for the disk
+for out in --cache --export; do # a limit of the file size imitates a full disk
     # shellcheck disable=SC2086
     (ulimit -f 20; "$program" "$hair" $plain -q --frames 9 $out "$work/full.usda" 2>"$work/err") && bad "$out reports success"
     one_line; says "cannot write: File too large"
@@ -80,10 +80,10 @@ if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "resumed
 rm "$work/res/frame_0011.png"
 run 0 $scene --resume -o "$work/res/"; says "1 frame in"
 if diff -r "$work/direct" "$work/res" >"$work/err"; then good; else bad "pictures drawn again differ"; fi
-head -c $size "$work/a.cache" >"$work/r.cache" # and no state: from the start
+head -c $size "$work/a.cache" >"$work/r.cache" # without a state it starts from frame 0
 run 0 $scene --resume --cache "$work/r.cache"; says "simulating again from the start"
 if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the cache made again differs"; fi
-echo old >"$work/r.cache.state" # a run that was killed when its cache was whole may leave one
+echo old >"$work/r.cache.state" # a run that was killed after completing its cache may leave a state
 run 0 $scene -q --resume --cache "$work/r.cache"; none "$work/r.cache.state"
 run 3 $scene -q --resume --cache "$work/r.cache" --gravity 0,-1,0; one_line; says "gravity"
 run 2 $scene -q --resume -o "$work/v.mp4"; one_line; says "--cache"
@@ -113,7 +113,7 @@ run 2 $hair --frames 3 -q --resume --export "$work/hair/x.usda"; says "written i
 run 2 $hair --frames 3 -q --export "$work/hair/"; one_line
 
 claim "--resume keeps only frames of this very scene, whatever their form, and says which it writes again and why"
-# go TEXT ARGUMENT...: with --resume and --quiet off, which says TEXT.
+# go TEXT ARGUMENT...: runs with --resume and without --quiet; the output must contain TEXT.
 go() {
     text=$1; shift
     # shellcheck disable=SC2086
@@ -139,7 +139,7 @@ for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
     head -c 300 "$work/first" >"$first"
     go "1 existing file will be written again: $first:" --frames 3
     equal "$first" "$work/first"
-    # A later frame, when all before it are as they were.
+    # A later frame, with all frames before it unchanged.
     second=$work/again/f_1${name#f_%d}
     cp "$second" "$work/second"
     head -c 300 "$work/first" >"$second"

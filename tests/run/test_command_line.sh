@@ -4,7 +4,7 @@
 . tests/support/claims.sh
 program=$bin/tractrix-render
 hair=assets/fur.tfx
-plain="--look plain --followers 0" # where light is not the claim: the studio takes most of a small picture's time
+plain="--look plain --followers 0" # for claims that are not about light: the studio light takes most of a small picture's time
 small="--frames 2 --size 32x24 $plain"
 
 claim "frames are written and told"
@@ -47,7 +47,7 @@ if cmp -s "$work/auto_1.pfm" "$work/blocks_1.pfm"; then good; else bad ".pfm dif
 
 claim "--exposure auto is one number for all parts, a cache, a still and a sequence, and all rasterisers; it is told"
 exposed="assets/curls.tfx $plain --shadow dom --scalp none --size 80x60 --exposure auto --frames 4"
-exposure_is() { # the last run's
+exposure_is() { # compares the exposure of the last run
     found=$(sed -n 's/.*"exposure": \([-0-9.][-0-9.]*\).*/\1/p' "$work/stats.json")
     if [ -n "$found" ] && [ "$found" != 0.0 ] && [ "$found" = "${first:=$found}" ]; then good; else bad "exposure '$found', not '$first'"; fi
 }
@@ -204,7 +204,7 @@ while [ ! -e "$work/int/frame_0001.png" ] && kill -0 $pid 2>/dev/null; do sleep 
 kill -INT $pid; kill -TERM $pid 2>/dev/null
 wait $pid
 status=$?
-# A second signal ends the program at once (128 + 15) if it comes before the first was looked at.
+# A second signal ends the program at once (128 + 15) if it arrives before the first was handled.
 if [ $status = 130 ] || [ $status = 143 ]; then good; else bad "exit status $status"; fi
 # shellcheck disable=SC2086
 "$program" assets/demo.json $plain --preroll 0 --size 320x240 -o "$work/int2/" >"$work/out" 2>"$work/err" &

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What tractrix-render may write where: never over its inputs, never two outputs into one file, and for a scene file only
-# into its own folder.
+# Where tractrix-render may write: never over its inputs, never two outputs to one file, and from a scene file only to
+# the scene file's own folder.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 small="--look plain --followers 0 --algo none --frames 1 --size 32x24 -q"
@@ -10,10 +10,10 @@ cp assets/fur.tfx "$work/own.tfx"
 cp assets/ball.obj "$work/ball.obj"
 mkdir "$work/scene" "$work/elsewhere"
 
-# scene KEYS: a scene file with these members besides its hair.
+# scene KEYS: a scene file with hair and these members.
 scene() { printf '{"sections": [{"file": "%s/assets/fur.tfx"}], %s}\n' "$checkout" "$1" >"$work/scene/own.json"; }
 
-# refuses WORD...: one line that names all of them.
+# refuses WORD...: the error is a single line that contains all words.
 refuses() {
     one_line
     for word in "$@"; do says "$word"; done

@@ -7,7 +7,7 @@ compare=$bin/tractrix-compare
 hair="assets/fur.tfx --look plain --followers 0 --size 33x25"
 turn="$hair --frames 3 --turntable 90 --speed 0"
 
-# stream STATUS ARGUMENT...: runs the program into $work/stream.
+# stream STATUS ARGUMENT...: runs the program with its output to $work/stream.
 stream() {
     expected=$1; shift
     "$program" "$@" >"$work/stream" 2>"$work/err" </dev/null
@@ -58,7 +58,7 @@ if command -v ffmpeg >/dev/null; then
     none "$work/y_4.png"; none "$work/p_3.png"
     for frame in 0 1 2; do
         holds "$compare" "$work/f_$frame.png" "$work/p_$frame.png"
-        # 1.164 levels of luma, 2.018 of chroma: half a step of each, and half of RGB's, is 2.1 levels.
+        # 1.164 levels of luma, 2.018 of chroma: half a step of each plus half a step of RGB is 2.1 levels.
         holds "$compare" "$work/f_$frame.png" "$work/y_$((frame + 1)).png" --pixel-tolerance 2.1
     done
     claim "a video comes out of a pipe"

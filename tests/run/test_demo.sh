@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The bundled scenes, simulated: the haircut keeps its volume, leaves the face free, and nothing flies about.
+# The bundled scenes, simulated: the haircut keeps its volume and leaves the face free, and no hair flies away.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 
-# settled FILE: no vertex of the Wavefront file lies in a cone of 33 degrees around the face, whose point is inside the skull, none over
-# 5 cm from the crown (0.11 m), and the hair is wider than the head (0.16 m) by a quarter: it has volume.
+# settled FILE: no vertex of the Wavefront file lies in a cone of 33 degrees around the face, with its apex inside the
+# skull, or more than 5 cm above the crown (0.11 m), and the hair is a quarter wider than the head (0.16 m), so it has
+# volume.
 settled() {
     if awk '$1 == "v" {
         x = $2; y = $3 + 0.02; z = $4

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Calls of OpenGL a frame, once a run is under way: nothing makes the program wait for all that a GPU has been given.
+# OpenGL calls for each frame of a running sequence: none makes the program wait for all queued work of a GPU.
 . tests/support/claims.sh
 program=$bin/tractrix-render
 export TRACTRIX_GL_CALLS=1
 scene="assets/bob.tfx --look plain --followers 0 --algo dftl --substeps 1 --size 96x72 -q --eye 0,0.1,0.8"
 
-# calls MOST BLOCKING ARGUMENT...: a frame has at most so many calls, and exactly so many blocking reads.
+# calls MOST BLOCKING ARGUMENT...: a frame makes at most MOST calls, and exactly BLOCKING blocking reads.
 calls() {
     most=$1 blocking=$2
     shift 2

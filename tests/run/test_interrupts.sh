@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Every program ends soon after a signal, wherever it is: status 130, one line, nothing half-written.
+# Every program ends soon after a signal, at any point: status 130, one line, no half-written file.
 . tests/support/claims.sh
 export XDG_CACHE_HOME="$work/cache"
 
-# Generous, for busy machines; the work that is interrupted takes many times as long.
+# Generous, for busy machines; the interrupted work takes many times as long.
 limit_ms=4000
 
-# interrupted SIGNAL AFTER_S PROGRAM ARGUMENT...: the signal comes after so many seconds. The program may leave nothing in
-# $work/here.
+# interrupted SIGNAL AFTER_S PROGRAM ARGUMENT...: sends the signal after this many seconds. The program must leave
+# nothing in $work/here.
 interrupted() {
     signal=$1 after=$2 program=$3; shift 3
     claim="$program, interrupted by $signal after $after s, ends at once"

@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What the programs say of bad input: exact lines. Each is `program: place: what is wrong: what was expected`, whatever bytes
-# files, names and values have.
+# The programs' messages about bad input: exact lines. Each is `program: place: what is wrong: what was expected`,
+# whatever bytes files, names and values have.
 . tests/support/claims.sh
 here=$PWD
 cd "$work" || exit 1
 case $bin in /*) ;; *) bin=$here/$bin ;; esac
 cp "$here/assets/fur.tfx" "$here/assets/ball.obj" .
 
-# line STATUS TEXT PROGRAM ARGUMENT...: exits with the status and says this one line.
+# line STATUS TEXT PROGRAM ARGUMENT...: exits with the status and prints this one line.
 line() {
     expected=$1 text=$2 name=$3; shift 3
     "$bin/tractrix-$name" "$@" >out 2>err </dev/null
@@ -104,7 +104,7 @@ claim "a line says what a file has of a look and what of it is used, --check wha
     for x in 0 0.1; do printf '%s 0 0 1 0 0 0.5 0.01\n%s 0.1 0 1 0 0 0.5 0.01\n' $x $x; done
     printf '1\n1\n'
 } >look.ply
-# look TEXT FLAG...: the render's first line.
+# look TEXT FLAG...: compares the first line that the program prints.
 look() { text=$1; shift; "$bin/tractrix-render" look.ply --unit m --algo none --look plain --frames 1 --size 8x8 -o look.png "$@" 2>err; if [ "$(head -n 1 err)" = "look.ply: the file's $text" ]; then good; else bad "got '$(head -n 1 err)', expected: $text"; fi; }
 look "colours used (--file-colors), opacities used (--file-opacity), thickness used (--file-thickness)"
 look "colours not used (--file-colors), opacities used (--file-opacity), thickness used (--file-thickness)" --color '#0000ff'

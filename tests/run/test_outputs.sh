@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Links, folders that are missing and places that take no files, in all five programs: nothing is overwritten that is read
-# or that a scene file may not touch, and what cannot be written is told before the work.
+# Links, missing folders and places that cannot hold files, in all five programs: nothing is overwritten that is an
+# input or that a scene file may not touch, and unwritable outputs are reported before the work begins.
 . tests/support/claims.sh
 checkout=$PWD
 small="--look plain --followers 0 --algo none --frames 3 --size 32x24 -q"
@@ -9,13 +9,13 @@ small="--look plain --followers 0 --algo none --frames 3 --size 32x24 -q"
 cp "$work/h.tfx" "$work/before"
 echo victim >"$work/victim"; cp "$work/victim" "$work/victim.before"
 
-# refuses WORD...: one line that names all of them.
+# refuses WORD...: the error is a single line that contains all words.
 refuses() {
     one_line
     for word in "$@"; do says "$word"; done
 }
 safe() { equal "$work/victim" "$work/victim.before"; equal "$work/h.tfx" "$work/before"; }
-# scene KEYS: sc/own.json with these members besides its hair.
+# scene KEYS: sc/own.json with hair and these members.
 scene() { printf '{"sections": [{"file": "%s/assets/fur.tfx"}], %s}\n' "$checkout" "$1" >"$work/sc/own.json"; }
 
 program=$bin/tractrix-render
@@ -53,7 +53,7 @@ run 2 "$work/h.tfx" $small --cache "$work/e.cache" -o "$work/e/y_%d.png"; refuse
 ln -s y_2.pfm "$work/e/y_0.pfm"
 run 2 "$work/h.tfx" $small -o "$work/e/y_%d.pfm"; refuses "y_2.pfm" "another name"
 ln -s ../victim "$work/e/z_1.png"
-run 0 "$work/h.tfx" $small -o "$work/e/z_%d.png" # named on the command line: links are followed as elsewhere
+run 0 "$work/h.tfx" $small -o "$work/e/z_%d.png" # outputs on the command line: links are followed as usual
 }
 is_png "$work/victim"; cp "$work/victim.before" "$work/victim"
 
@@ -127,7 +127,7 @@ program=$bin/tractrix-gen; run 1 -o "$work/early.tfx" --mesh "$work/dir"; refuse
 program=$bin/tractrix-bench
 for flag in --csv --json --html; do run 1 speed --set 1k16 --steps 1 $flag "$work/dir"; refuses "$flag" "Is a directory"; silent out; done
 program=$bin/tractrix-render
-run 3 "$work/none.tfx" -o "$work/early/deep/" --stats "$work/early/other/s.json"; none "$work/early" # folders that were made go again
+run 3 "$work/none.tfx" -o "$work/early/deep/" --stats "$work/early/other/s.json"; none "$work/early" # folders that were made are removed again
 
 claim "a cache whose state has too long a name is told at once"
 long=$(printf '%0250d' 0)

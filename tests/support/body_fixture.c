@@ -11,7 +11,7 @@
 enum { COLUMNS = 14, ROWS = 6 };
 static const float CELL = 0.02f;
 
-// Of the fixture's roots: x from 0 to 0.2, y 1.6, z about 0.
+// Makes a sheet through the fixture's roots: x from 0 to 0.2, y 1.6, z about 0.
 static void make_sheet(Mesh *mesh)
 {
     assert_int_equal(mesh_create(mesh, (COLUMNS + 1) * (ROWS + 1), 2 * COLUMNS * ROWS, NULL),

@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Shared by the tests of documents, whose commands run in a copy of what they need. They source it instead of claims.sh.
+# Shared by the tests of documents, whose commands run in a copy of the files that they need. Source it instead of
+# claims.sh.
 . tests/support/claims.sh
 
-# make_checkout: makes $work/checkout, with a program `small` that is tractrix-render with smaller,
-# simpler images and fewer frames.
+# make_checkout: makes $work/checkout, with a program `small` that runs tractrix-render with smaller, simpler images and
+# fewer frames.
 make_checkout() {
     mkdir -p "$work/checkout/out"
     cp -r assets scripts "$work/checkout/"
     ln -s "$(realpath "$bin")" "$work/checkout/out/release"
     printf 'all:\n' >"$work/checkout/Makefile"
 
-    # The last of equal flags counts. Scenes of docs/ have one frame, and so has an image without a number in its name.
+    # The last of equal flags applies. Scenes of docs/ get one frame, and so does an image without a number in its name.
     cat >"$work/checkout/small" <<END
 #!/bin/sh
 case " \$* " in

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Shared by the tests of command lines: they source it with `. tests/support/claims.sh` and set `program` to what `run` runs.
-# They end with `finish`.
+# Shared by the tests of command lines: they source it with `. tests/support/claims.sh`, set `program` to the program
+# that `run` runs, and end with `finish`.
 set -u
 # shellcheck disable=SC2034 # they use it
 bin=${TRACTRIX_BIN:-out/release}
@@ -10,14 +10,14 @@ trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 : >"$work/out"; : >"$work/err"
 passed=0 failed=0 skipped=0 claim=
 
-# claim TEXT: what the next lines must make true.
+# claim TEXT: the claim that the next lines test.
 claim() { claim=$1; }
 good() { passed=$((passed + 1)); }
 bad() { failed=$((failed + 1)); echo "FAILED: $claim: $*"; sed 's/^/    /' "$work/out" "$work/err"; }
 skip() { skipped=$((skipped + 1)); echo "skipped: $claim: $*"; }
 # holds COMMAND...: the command succeeds.
 holds() { if "$@" >"$work/out" 2>"$work/err" </dev/null; then good; else bad "does not hold: $*"; fi; }
-# run STATUS ARGUMENT...: runs the program and compares the exit status; what it says goes to $work/out and $work/err.
+# run STATUS ARGUMENT...: runs the program and compares the exit status; its output goes to $work/out and $work/err.
 run() {
     expected=$1; shift
     "${program:?}" "$@" >"$work/out" 2>"$work/err" </dev/null
@@ -33,7 +33,7 @@ is_png() { if [ "$(head -c 4 "$1" | tail -c 3)" = PNG ]; then good; else bad "no
 none() { if [ -e "$1" ]; then bad "there is $1"; else good; fi; }
 no_files() { if [ -z "$(ls -A "$1" 2>/dev/null)" ]; then good; else bad "left behind: $(ls -A "$1")"; fi; }
 equal() { if cmp -s "$1" "$2"; then good; else bad "$1 and $2 are not equal"; fi; }
-# same_images A B: the images, or those of two folders, have the same pixels; their texts may differ.
+# same_images A B: two images, or the images of two folders, have the same pixels; their texts may differ.
 same_images() { holds "$bin/tractrix-compare" -q "$1" "$2"; }
 
 finish() {

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-// The rasteriser's, and compute's beside them.
+// Counts the rasteriser's threads, and threads for compute shaders.
 static int count_threads(void)
 {
     int count = 0;
@@ -30,7 +30,7 @@ static int count_threads(void)
     return count;
 }
 
-// FNV-1a.
+// FNV-1a hash.
 static uint64_t digest(const unsigned char *bytes, size_t size)
 {
     uint64_t hash = 0xcbf29ce484222325u;

@@ -9,7 +9,8 @@
 
 #include <cmocka.h>
 
-// Who does not, from how many particles a strand on, and why. `variant` NULL: all of them.
+// Exceptions: the solver, the number of particles from which on it breaks the promise, and the
+// reason. `variant` NULL: all variants.
 static const struct {
     const char *algo, *variant;
     unsigned lacks;
@@ -54,8 +55,8 @@ void every_solver_require(bool holds, const SolverType *type, const char *varian
     if (!holds) fail_msg("%s %s: %s", type->name, variant, text);
 }
 
-// Each coordinate is off by at most 2^-24 of its size, so a difference by twice that, a length by
-// sqrt(3) times as much.
+// A coordinate's error is at most 2^-24 of its size. So a difference has at most twice this error,
+// and a length sqrt(3) times as much.
 double every_solver_length_error(const Vec *style, const Vec *q, int n)
 {
     double worst = 0;

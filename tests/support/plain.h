@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parameters with the defaults of --look plain, to which tests compare what they compute
-// themselves.
+// Parameters with the defaults of --look plain, with which tests compare their own results.
 #pragma once
 
 #include "scene/scene.h"

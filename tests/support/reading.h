@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hair files read from memory. Content is copied to a block of its exact size (and the zero behind
-// it), so that a sanitizer sees every read beyond it. The files' name is FILE.
+// Reads hair files from memory. The content is copied to a block of its exact size (and the zero
+// after it), so that a sanitizer sees every read beyond it. The files' name is FILE.
 #pragma once
 
 #include "strands/strands_read.h"

@@ -17,7 +17,7 @@ static void cross(const Vec a, const Vec b, Vec r)
         r[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-// Each column of `frame` turned by the smallest rotation from the unit vector a to the unit vector
+// Rotates each column of `frame` by the smallest rotation from the unit vector a to the unit vector
 // b (Rodrigues): v -> c v + k x v + k (k.v)/(1 + c), k = a x b, c = a.b.
 static void turn_frame(Matrix frame, const Vec a, const Vec b)
 {
@@ -32,7 +32,7 @@ static void turn_frame(Matrix frame, const Vec a, const Vec b)
     }
 }
 
-// The columns are where the head has turned x, y and z.
+// The columns are the head's axes x, y and z in the world.
 static void head_frame(const HeadPose *head, Matrix frame)
 {
     const HeadPose turn = {

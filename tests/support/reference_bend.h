@@ -4,10 +4,10 @@
 
 #include "support/twin.h"
 
-// K of the parameters, m/s^2.
+// K for these parameters, m/s^2.
 double reference_bend_stiffness(const SectionParams *params);
 
-// Energy of a strand with segments r[1 .. n-1] for K = 1, style in the head's frame; `gradient`, if
-// not NULL, becomes that by the segments.
+// The energy of a strand with segments r[1 .. n-1] for K = 1, style in the head's frame.
+// `gradient`, if not NULL, gets the derivative by the segments.
 double reference_bend_energy(const TwinStrand *strand, const HeadPose *head, const Vec *r,
                              Vec *gradient);

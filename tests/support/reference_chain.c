@@ -64,14 +64,15 @@ static void apply(Vec *x, int n, const Vec *g)
     }
 }
 
-// What bending adds to the second system: masses between the ends of each segment, and the
-// positions that leapfrog with those masses would lead segments to.
+// Contributions of bending to the second system: the masses between the ends of each segment, and
+// the positions that a leapfrog step with these masses would give segments.
 typedef struct Bending {
     double mass[TWIN_MAX + 1];
     Vec pull[TWIN_MAX];
 } Bending;
 
-// What an acceleration moves particles by in a step, with the style's springs implicit.
+// The displacement of particles in a step for an acceleration of 1, with the style's springs
+// implicit.
 static double find_acts(const TwinStep *step, const SectionParams *params)
 {
     double h = step->first ? step->dt / 2 : step->dt, c = step->drag, share = params->style;
@@ -190,20 +191,20 @@ void reference_two_pass(const TwinStrand *strand, const Vec *predicted, const Ve
     }
 }
 
-// Velocities relative to the root's at the time.
+// Velocities relative to the root's current velocity.
 static void subtract_root(int n, const Vec *v, Vec *u)
 {
     for (int j = 0; j < n; ++j) subtract(v[j], v[0], u[j]);
 }
 
-// Seen from the root: velocities before and after the step, and what forces change them by (the
-// root's acceleration is one of them).
+// Motion relative to the root: velocities before and after the step, and the changes by forces
+// (including the root's acceleration).
 typedef struct Motion {
     Vec before[TWIN_MAX], now[TWIN_MAX], forced[TWIN_MAX];
 } Motion;
 
-// Forces of a step that solves: to the predicted positions. Of one that is rescued: only those that
-// are uniform.
+// Changes of velocity by forces: in a step that solves, to the predicted positions; in a rescued
+// step, only by uniform forces.
 static void find_forced(const TwinStep *step, const Vec *x_old, const Vec *v_old,
                         const Vec *predicted, const Vec root, bool rescued, int n, Vec *forced)
 {
@@ -216,7 +217,7 @@ static void find_forced(const TwinStep *step, const Vec *x_old, const Vec *v_old
         }
 }
 
-// Puts the strand at x with exact lengths.
+// Sets the strand to x with exact lengths.
 static void rebuild(TwinStrand *strand, const Vec *x, double dt)
 {
     Vec old[TWIN_MAX];
@@ -231,7 +232,7 @@ static void rebuild(TwinStrand *strand, const Vec *x, double dt)
         for (int i = 0; i < 3; ++i) strand->v[j][i] = (strand->x[j][i] - old[j][i]) / dt;
 }
 
-// In the frame of the head at the step's end.
+// In the frame of the head at the end of the step.
 static double bending_energy(const TwinStrand *strand, const TwinStep *step,
                              const SectionParams *params)
 {
@@ -243,8 +244,8 @@ static double bending_energy(const TwinStrand *strand, const TwinStep *step,
                : 0;
 }
 
-// The kinetic energy that a step has brought less the work of the forces, what constraints gave,
-// had the strand gone by the share k of its way: a k^2 + b k + c.
+// The kinetic energy gained in a step minus the work of the forces, which is the energy that
+// constraints gave, if the strand had moved by the share k of its way: a k^2 + b k + c.
 static void account(const Motion *motion, int n, double *a, double *b, double *c)
 {
     *a = *b = *c = 0;
@@ -257,14 +258,14 @@ static void account(const Motion *motion, int n, double *a, double *b, double *c
     }
 }
 
-// The greatest k of 0 .. 1 for which a k^2 + b k + c is 0 or less, or what comes nearest to it.
+// The largest k in 0 .. 1 for which a k^2 + b k + c <= 0, or the nearest k to that.
 static double share_within(double a, double b, double c)
 {
     double discriminant = b * b - 4 * a * c;
     return fmin(fmax((sqrt(fmax(discriminant, 0)) - b) / (2 * a), 0), 1);
 }
 
-// The strand goes by the share of its way only, each segment towards where it went.
+// Moves the strand by only a share of its way; each segment keeps its direction of motion.
 static void slow_down(TwinStrand *strand, const Vec *x_old, double share, double dt)
 {
     Vec x[TWIN_MAX];
@@ -289,8 +290,8 @@ static double allowed(const TwinStrand *strand, const TwinStep *step, double kin
     return 0.005 * ((strand->n - 1) * length / 2 * vec_norm(acceleration) + kinetic);
 }
 
-// Slows the strand down where it has gained more than is allowed. What its springs store has risen
-// by `stored` in the step.
+// Slows the strand down if it has gained more energy than is allowed. `stored`: the rise of the
+// springs' energy in the step.
 static void guard(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
                   const Motion *motion, const Vec *x_old, double stored)
 {
@@ -314,14 +315,14 @@ static void guard(TwinStrand *strand, const TwinStep *step, const SectionParams 
         squares += vec_dot(now, now) / 2;
         vec_add_scaled(strand->v[0], kept, now, strand->v[j]);
     }
-    // Segments that turn go a little farther than by the share of the way.
+    // Segments that rotate move slightly farther than by the share of their way.
     slowed += bending_energy(strand, step, params) - (bent - (1 - share) * stored) +
               kept * kept * (squares - kinetic);
     strand->gained = fmax(slowed - over, 0);
 }
 
-// What the first correction was goes on into the next steps' tensions, as far as both that at rest
-// and what the step takes for it can be: the forces on all that is beyond.
+// Carries the first correction over to the tensions of the next steps, limited by the largest
+// possible tension: the forces on everything beyond the segment.
 static void carry_tensions(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
                            const double *lambda, bool violent)
 {

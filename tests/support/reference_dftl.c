@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-// The published rule. `correction[j]` is what put particle j at its length from its leader.
+// The published rule. `correction[j]`: the correction that gave particle j its distance from its
+// leader.
 static void follow(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
                    Vec *correction)
 {
@@ -36,7 +37,7 @@ void reference_dftl_step(TwinStrand *strand, const TwinStep *step, const Section
                 (strand->x[i][k] - old[i][k]) / step->dt - s * correction[i + 1][k] / step->dt;
 }
 
-// Where the drawn strand, of velocities `u`, would be without lengths.
+// Where the drawn strand with velocities `u` would be without length constraints.
 static void fly(const TwinStrand *strand, const TwinStep *step, const SectionParams *params,
                 const Vec *u, Vec *flown)
 {
@@ -52,8 +53,9 @@ static void fly(const TwinStrand *strand, const TwinStep *step, const SectionPar
     memcpy(flown, free.x, sizeof free.x);
 }
 
-// sum (k m - u dt - (f - u dt)).(k m + u dt)/2/dt^2 as a k^2 + b k + c: m goes from `old` to the
-// strand, f to `flown`; all less the root's own, of this step and the one before.
+// sum (k m - u dt - (f - u dt)).(k m + u dt)/2/dt^2 as a k^2 + b k + c, where m is the motion from
+// `old` to the strand and f the motion to `flown`. All are relative to the root's motion in this
+// step and in the previous one.
 static void account(const TwinStrand *strand, const Vec *old, const Vec *flown, const Vec *u,
                     double dt, double *a, double *b, double *c)
 {
@@ -72,7 +74,7 @@ static void account(const TwinStrand *strand, const Vec *old, const Vec *flown, 
     }
 }
 
-// The strand goes by a share of its way only, each segment towards where it went.
+// Moves the strand by only a share of its way; each segment keeps its direction of motion.
 static void slow_down(TwinStrand *strand, const Vec *old, double share)
 {
     Vec went[TWIN_MAX];
@@ -112,8 +114,8 @@ static void find_velocities(TwinStrand *strand, const Vec *old, double dt)
         for (int k = 0; k < 3; ++k) strand->v[j][k] = (strand->x[j][k] - old[j][k]) / dt;
 }
 
-// Slows the strand down where corrections have given more than 0.003 of what it may have. Gives
-// what they gave in this step.
+// Slows the strand down if corrections have given more than 0.003 of the energy that it may have.
+// Returns the energy that they gave in this step.
 static double guard(TwinStrand *strand, const TwinStep *step, const Vec *old, const Vec *flown,
                     const Vec *u)
 {
@@ -131,7 +133,7 @@ static double guard(TwinStrand *strand, const TwinStep *step, const Vec *old, co
     double kept = kinetic > 0 ? sqrt(1 - over / kinetic) : 1;
     slow_down(strand, old, share);
     find_velocities(strand, old, step->dt);
-    // Segments that turn go a little farther than by the share of the way.
+    // Segments that rotate move slightly farther than by the share of their way.
     gained += kept * kept * (kinetic_energy(strand) - kinetic) - over;
     for (int j = 1; j < strand->n; ++j) {
         Vec v;
@@ -142,8 +144,8 @@ static double guard(TwinStrand *strand, const TwinStep *step, const Vec *old, co
     return given;
 }
 
-// What the next step takes from the velocities: what was gained above 0.001 of what the strand may
-// have, and as much again as this step gave.
+// The energy that the next step removes from the velocities: the gain above 0.001 of the energy
+// that the strand may have, and as much again as this step gave.
 static void charge(TwinStrand *strand, const TwinStep *step, double given)
 {
     double kinetic = kinetic_energy(strand),
@@ -164,7 +166,7 @@ void reference_dftl_guarded_step(TwinStrand *strand, const TwinStep *step,
             strand->v[j][k] += strand->paid * (strand->v[0][k] - strand->v[j][k]);
     memcpy(u, strand->v, sizeof u);
     fly(strand, step, params, (const Vec *)u, flown);
-    for (int j = 1; j + 1 < strand->n; ++j) { // gives back along the segment as it is
+    for (int j = 1; j + 1 < strand->n; ++j) { // gives back along the current segment
         Vec segment;
         vec_add_scaled(strand->x[j + 1], -1, strand->x[j], segment);
         vec_add_scaled(strand->v[j], -strand->carried[j], segment, strand->v[j]);

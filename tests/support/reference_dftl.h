@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Dynamic follow-the-leader in double precision, one strand on the CPU, as the paper states it.
+// Dynamic follow-the-leader in double precision, for one strand on the CPU, as stated in the paper.
 #pragma once
 
 #include "support/twin.h"
@@ -8,7 +8,7 @@
 // 4 to 10.
 void reference_dftl_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);
 
-// As `steady` does it: strand->v are the drawn strand's velocities, strand->carried[j] is what
-// particle j gives back as a share of its follower's segment, 1/s.
+// The variant `steady`. strand->v are the drawn strand's velocities; strand->carried[j] is the
+// share of its follower's segment that particle j gives back, 1/s.
 void reference_dftl_guarded_step(TwinStrand *strand, const TwinStep *step,
                                  const SectionParams *params);

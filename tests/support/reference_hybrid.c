@@ -6,14 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-// A step by the midpoint rule, in the frame that moves with the root: positions relative to the
-// root, velocities to its velocity.
+// A step by the midpoint rule, in the frame that moves with the root: positions and velocities are
+// relative to the root's.
 typedef struct Middle {
-    double h, decay;         // half a step, s; what drag leaves of a velocity in it
-    double stiffness;        // of the style springs, 1/s^2
-    Vec root, root_velocity; // at the step's end; over the step
+    double h, decay;         // half a step, s; share of velocity that drag leaves in it
+    double stiffness;        // stiffness of the style springs, 1/s^2
+    Vec root, root_velocity; // position at the step's end; mean velocity in the step
     Vec force;               // gravity and wind, m/s^2
-    Vec push;                // what it adds in half a step, m/s
+    Vec push;                // change of velocity by `force` in half a step, m/s
     Vec q[TWIN_MAX], style[TWIN_MAX];
     Vec w[TWIN_MAX], aim[TWIN_MAX], u[TWIN_MAX];
     double gained;
@@ -42,13 +42,13 @@ static void open_middle(Middle *m, const TwinStrand *strand, const TwinStep *ste
     }
 }
 
-// Half a step of forces and drag, of an absolute velocity.
+// Applies forces and drag to an absolute velocity for half a step.
 static void kick_half(const Middle *m, const Vec v, Vec r)
 {
     for (int k = 0; k < 3; ++k) r[k] = m->decay * v[k] + m->push[k] - m->root_velocity[k];
 }
 
-// What half a kick and the springs, whose factors are exact about rest, make of velocities.
+// Velocities after half a kick and half a step of the springs, whose factors are exact around rest.
 static void spring_half(const Middle *m, int n, const Vec *kicked, Vec *vs)
 {
     double gain = m->h, decay = m->decay;
@@ -61,7 +61,7 @@ static void spring_half(const Middle *m, int n, const Vec *kicked, Vec *vs)
             vs[j][k] = keep * (kicked[j][k] + z / m->h * (m->style[j][k] - m->q[j][k]));
 }
 
-// J^T lambda, the root's share left out: r_j += lambda_j d_j - lambda_(j+1) d_(j+1), times `scale`.
+// J^T lambda without the root: r_j += lambda_j d_j - lambda_(j+1) d_(j+1), times `scale`.
 static void add_impulses(int n, double scale, const double *lambda, const Vec *d, Vec *r)
 {
     for (int j = 1; j < n; ++j) {
@@ -70,7 +70,7 @@ static void add_impulses(int n, double scale, const double *lambda, const Vec *d
     }
 }
 
-// Tensions of the middle, from velocities without them: lambda along directions d.
+// The tensions at the middle of the step, from velocities without them: lambda along directions d.
 static void find_tensions(const Middle *m, const TwinStrand *strand, const Vec *vs, Vec *d,
                           double *lambda)
 {
@@ -117,7 +117,7 @@ static void find_middle(Middle *m, const TwinStrand *strand, const Vec *vs)
     }
 }
 
-// The middle of the step: where particles want to go, and how fast.
+// The middle of the step: the aims of particles and their velocities.
 static void middle(Middle *m, const TwinStrand *strand, const TwinStep *step,
                    const SectionParams *params)
 {
@@ -136,8 +136,8 @@ static void middle(Middle *m, const TwinStrand *strand, const TwinStep *step,
     }
 }
 
-// Energy that the step may end with, more than u has: less what it has gained, more than what
-// forces did from the aims to x.
+// Energy that the step may end with beyond that of u: minus the energy gained before, plus the work
+// of forces from the aims to x.
 static double budget(const Middle *m, int n, const Vec *x)
 {
     double sum = -m->gained;
@@ -156,8 +156,8 @@ static double kinetic(int n, const Vec *v)
     return sum;
 }
 
-// The strand ends at x, relative to the root: velocities are projected on what its shape allows,
-// and pay for energy that came from nothing.
+// Ends the step with the strand at x, relative to the root: projects velocities to those that the
+// shape allows, and reduces them by energy that was created.
 static void finish(TwinStrand *strand, Middle *m, const Vec *x)
 {
     const int n = strand->n;
@@ -182,7 +182,7 @@ static void finish(TwinStrand *strand, Middle *m, const Vec *x)
     }
 }
 
-// As seen by the two passes, the root stands still and is where the strand's particle 0 is.
+// In the two passes the root stands still at the strand's particle 0.
 void reference_hybrid_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params)
 {
     static Middle m;
@@ -201,7 +201,8 @@ static uint32_t hash(uint32_t id) // lowbias32
     return id ^ (id >> 16);
 }
 
-// A random order of 1 .. count: a bijection on the numbers of as many bits, those beyond left out.
+// A random order of 1 .. count: a bijection on numbers with as many bits; numbers beyond count are
+// left out.
 static void shuffle(uint32_t seed, int count, int *order)
 {
     int bits = 1, found = 0;
@@ -217,7 +218,7 @@ static void shuffle(uint32_t seed, int count, int *order)
     }
 }
 
-// Particle i goes to `target`, both sides follow.
+// Moves particle i to `target`; both sides of the strand follow.
 static void pull(TwinStrand *strand, Vec *x, int i, const Vec target)
 {
     for (int side = -1; side <= 1; side += 2) {
@@ -237,7 +238,7 @@ static void pull(TwinStrand *strand, Vec *x, int i, const Vec target)
     vec_copy(target, x[i]);
 }
 
-// As published, from root to tip: v = (x - q)/dt, and an explicit spring to the style.
+// As published, from root to tip: v = (x - q)/dt, with an explicit spring to the style.
 void reference_thesis_emulation_step(TwinStrand *strand, const TwinStep *step,
                                      const SectionParams *params)
 {
@@ -261,8 +262,8 @@ void reference_thesis_emulation_step(TwinStrand *strand, const TwinStep *step,
     }
 }
 
-// The first pull: particle i goes where it wants to, and every segment follows as seen from its
-// tail's own aim.
+// The first pull: particle i moves to its aim, and every segment follows in the frame of its tail's
+// own aim.
 static void pull_along(const TwinStrand *strand, const Middle *m, Vec *x, int i)
 {
     vec_copy(m->aim[i], x[i]);

@@ -4,7 +4,7 @@
 
 #include "support/twin.h"
 
-// TwinFunctions: the rules in docs/solver_derivations.md, and the published one of emulation.
+// TwinFunctions: the rules in docs/solver_derivations.md, and the published rule of emulation.
 void reference_hybrid_step(TwinStrand *strand, const TwinStep *step, const SectionParams *params);
 void reference_emulation_step(TwinStrand *strand, const TwinStep *step,
                               const SectionParams *params);

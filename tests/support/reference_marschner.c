@@ -29,7 +29,7 @@ void marschner_azimuthal(double eta, double roughness, double cos_d, double colo
     double cos_t = sqrt(1 - sin2_d / (eta * eta)), step = PI / steps;
     for (int p = 0; p < LOBE_COUNT; ++p) density[p] = 0;
     for (int i = 0; i < steps; ++i) {
-        // h = sin(gamma_i), and 1/2 dh is the share of the light that comes in there.
+        // h = sin(gamma_i); 1/2 dh is the share of the light that enters there.
         double gamma_i = (i + 0.5) * step - PI / 2, gamma_t = asin(sin(gamma_i) / eta_d);
         double share = cos(gamma_i) * step / 2, f = fresnel(eta, cos_d * cos(gamma_i));
         double through = pow(color, cos(gamma_t) / cos_t);
@@ -42,7 +42,7 @@ void marschner_azimuthal(double eta, double roughness, double cos_d, double colo
     }
 }
 
-// exp(-x) I0(x) by the integral that defines I0.
+// exp(-x) I0(x), from the integral that defines I0.
 static double bessel_i0_scaled(double x)
 {
     const int steps = 2000;

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-// How far the ends of a link with this stretch move, for each m/s^2 of inverse mass (1 kg each) and
-// m of distance between them.
+// The displacement of a link's ends for each m/s^2 of inverse mass (1 kg each) and m of distance
+// between them.
 typedef double (*Correction)(double distance, double length, double inverse_masses,
                              double softness);
 
@@ -32,8 +32,8 @@ static void sweep(TwinStrand *strand, Correction correction, double softness)
     }
 }
 
-// A step of h seconds that ends with the root at `root` and `sweeps` sweeps; forces act for `acts`
-// seconds; the share `kept` of the velocity stays.
+// A step of h seconds that ends with the root at `root` and `sweeps` sweeps. Forces act for `acts`
+// seconds; the share `kept` of the velocity remains.
 static void small_step(TwinStrand *strand, const TwinStep *step, double h, double acts,
                        const Vec root, double kept, int sweeps, Correction correction,
                        double softness, const SectionParams *params)

@@ -4,10 +4,11 @@
 
 #include "support/twin.h"
 
-// All sweeps at the end of one step, each link by Bullet's formula (btSoftBody::PSolve_Links).
+// Bullet: all sweeps at the end of one step, each link by Bullet's formula
+// (btSoftBody::PSolve_Links).
 void reference_rope_bullet_step(TwinStrand *strand, const TwinStep *step,
                                 const SectionParams *params);
 
-// XPBD: as many small steps, each with one sweep.
+// XPBD: as many small steps as sweeps, each with one sweep.
 void reference_rope_xpbd_step(TwinStrand *strand, const TwinStep *step,
                               const SectionParams *params);

@@ -34,10 +34,10 @@ void reference_start(ReferenceStrand *strand, int n, const double (*positions)[3
     memcpy(strand->tip, positions[n - 1], sizeof strand->tip);
 }
 
-// In the plane of the motion the tail trails on a tractrix with the head's line as its asymptote.
-// Its distance y to the line and the parameter P (y = L sech(P/L)) tell where it is: trailing (tail
-// behind) P grows by s; pushed (tail ahead) P falls by s and may pass the cusp, from where on it
-// trails. Signed, P1 = P0 + s with P0 < 0 ahead; the tail is L tanh(P1/L) behind the head.
+// In the plane of the motion the tail moves on a tractrix whose asymptote is the head's line. Its
+// distance y to the line gives the parameter P (y = L sech(P/L)). If the tail trails behind, P
+// grows by s. If it is pushed ahead, P falls by s and may pass the cusp, after which it trails.
+// Signed: P1 = P0 + s, with P0 < 0 ahead; the tail is L tanh(P1/L) behind the head.
 void reference_tractrix(const double h[3], const double t[3], const double p[3], double L,
                         double result[3])
 {
@@ -53,7 +53,7 @@ void reference_tractrix(const double h[3], const double t[3], const double p[3],
     double along = dot(T, e);
     add_scaled(T, -along, e, across);
     double y = norm(across);
-    if (y <= 1e-300) { // on the line: dragged or pushed along it
+    if (y <= 1e-300) { // the tail is on the line and moves along it
         add_scaled(t, 1, S, result);
         return;
     }
@@ -86,7 +86,7 @@ static void pull(ReferenceStrand *strand, int end, const Vec target)
     follow(strand->q, end, end == 0 ? strand->n - 1 : 0, strand->length, old);
 }
 
-// What forces change a velocity by.
+// The change of velocity by forces.
 static void find_push(const ReferenceForces *forces, Vec push)
 {
     double h = forces->first ? forces->dt / 2 : forces->dt, c = forces->drag;
@@ -94,7 +94,7 @@ static void find_push(const ReferenceForces *forces, Vec push)
     for (int k = 0; k < 3; ++k) push[k] = (forces->gravity[k] + c * forces->wind[k]) * gain;
 }
 
-// Forces turn the string by the angles that they push across it, as glsl/sim/split.comp has it.
+// Forces rotate the string by the angles that they push it sideways, as in glsl/sim/split.comp.
 static void push_by_arcs(const ReferenceForces *forces, const Vec r, double R, Vec s)
 {
     Vec push, middle;
@@ -119,7 +119,7 @@ static void kick(ReferenceStrand *strand, const ReferenceForces *forces)
             strand->velocity[k] * decay + (forces->gravity[k] + c * forces->wind[k]) * gain;
 }
 
-// The tip, a mass on a string of the strand's length: gives where it goes.
+// The tip is a mass on a string of the strand's length. `target`: where it moves.
 static void fly(ReferenceStrand *strand, const double root[3], const ReferenceForces *forces,
                 bool arcs, Vec target)
 {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The split solver in double precision, one strand on the CPU, written from the definitions and not
-// from the shaders.
+// The split solver in double precision, for one strand on the CPU, written from the definitions and
+// not from the shaders.
 #pragma once
 
 #include <stdbool.h>
 
 enum { REFERENCE_MAX = 128 };
 
-// A strand: q[0] is the root, length[j] the rest length between j - 1 and j.
+// A strand: q[0] is the root, length[j] the rest length between particles j - 1 and j.
 typedef struct ReferenceStrand {
     int n;
     double q[REFERENCE_MAX][3];
     double length[REFERENCE_MAX];
-    double tip[3], velocity[3]; // the tip particle (ball); the tip's velocity (both)
+    double tip[3], velocity[3]; // the tip particle (ball only); the tip's velocity
 } ReferenceStrand;
 
 typedef struct ReferenceForces {
@@ -20,7 +20,7 @@ typedef struct ReferenceForces {
     bool first; // forces act for dt/2
 } ReferenceForces;
 
-// At rest in `positions`; lengths as they are there.
+// Starts at rest in `positions`; rest lengths are those of `positions`.
 void reference_start(ReferenceStrand *strand, int n, const double (*positions)[3]);
 
 // The tail's new position: the exact pursuit curve by its classical solution with asech, tanh and
@@ -28,8 +28,8 @@ void reference_start(ReferenceStrand *strand, int n, const double (*positions)[3
 void reference_tractrix(const double h[3], const double t[3], const double p[3], double L,
                         double result[3]);
 
-// One step. `root` is where the head has carried the root to. The ball's strand is carried along
-// first, the dragged one is not.
+// One step. `root`: the root's new place. For `ball`, the strand is first carried along with the
+// root; for `dragged` it is not.
 typedef void (*ReferenceStep)(ReferenceStrand *strand, const double root[3],
                               const ReferenceForces *forces);
 void reference_ball_step(ReferenceStrand *strand, const double root[3],
@@ -39,7 +39,6 @@ void reference_dragged_step(ReferenceStrand *strand, const double root[3],
 void reference_thesis_step(ReferenceStrand *strand, const double root[3],
                            const ReferenceForces *forces);
 
-// The strand that is drawn: directions turned by the share `style` towards style[j] (unit vectors,
-// j > 0).
+// The drawn strand: directions rotated by the share `style` towards style[j] (unit vectors, j > 0).
 void reference_pose(const ReferenceStrand *strand, const double (*style)[3], double share,
                     double (*positions)[3]);

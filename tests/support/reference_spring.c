@@ -6,7 +6,7 @@
 
 #define PI 3.14159265358979323846
 
-// A link as it is: length, direction, the style's direction, spring constants.
+// A link: length, direction, the style's direction, spring constants.
 typedef struct Link {
     double m, l, k, b;
     Vec u, t;
@@ -36,7 +36,7 @@ static double angle_of(const Link *link)
     return acos(fmax(-1, fmin(1, vec_dot(link->u, link->t))));
 }
 
-// On the particle at the link's end.
+// The force on the particle at the link's end.
 static void link_force(const Link *link, Vec force)
 {
     Vec across;
@@ -48,7 +48,7 @@ static void link_force(const Link *link, Vec force)
     }
 }
 
-// Of a link r of which the explicit rule's springs have this potential (spring.comp).
+// The potential of the explicit rule's springs for a link r (spring.comp).
 static double potential(const Link *link, const Vec r, double softness)
 {
     double l = link->l, e = softness, m = vec_norm(r), longer = fmax(l, e);
@@ -59,7 +59,7 @@ static double potential(const Link *link, const Vec r, double softness)
     return link->k / 4 * stretched * stretched + b * m * m / (m * m + e * e) * phi;
 }
 
-// By central differences, so that it is known to have a potential.
+// The force by central differences of the potential, so that it is conservative.
 static void conservative_force(const Link *link, double softness, Vec force)
 {
     double delta = 1e-6 * link->l;
@@ -73,9 +73,9 @@ static void conservative_force(const Link *link, double softness, Vec force)
     }
 }
 
-enum { BAND = 5, SIZE = 3 * TWIN_MAX }; // unknowns that one equation couples to either side
+enum { BAND = 5, SIZE = 3 * TWIN_MAX }; // an equation couples this many unknowns on each side
 
-// Solves a x = b by Gauss's elimination inside the band; b becomes x.
+// Solves a x = b by Gaussian elimination within the band; b becomes x.
 static void solve_banded(double (*a)[2 * BAND + 1], double *b, int count)
 {
     for (int i = 0; i < count; ++i)
@@ -91,8 +91,8 @@ static void solve_banded(double (*a)[2 * BAND + 1], double *b, int count)
     }
 }
 
-// Adds a link between particles j - 1 and j to 1 + H and to the right side, both times `acts`
-// (s^2). The root is no unknown: it moves by `root_move`.
+// Adds a link between particles j - 1 and j to 1 + H and to the right-hand side, both times `acts`
+// (s^2). The root is not an unknown: it moves by `root_move`.
 static void assemble(const Link *link, int j, double acts, const Vec root_move,
                      double (*a)[2 * BAND + 1], double *b)
 {
@@ -124,7 +124,8 @@ static double acting_time(const TwinStep *step)
     return c > 0 ? -expm1(-c * h) / c : h;
 }
 
-// (1 + H) D = h v* + h^2 f F(x), D: displacements in this step, v*: velocities without springs.
+// (1 + H) D = h v* + h^2 f F(x), where D are the displacements in this step and v* the velocities
+// without springs.
 void reference_spring_implicit_step(TwinStrand *strand, const TwinStep *step,
                                     const SectionParams *params)
 {
@@ -151,7 +152,7 @@ void reference_spring_implicit_step(TwinStrand *strand, const TwinStep *step,
         }
 }
 
-// Between two poses: translation straight, rotation at constant speed.
+// Interpolates two poses: translation linearly, rotation at constant speed.
 static HeadPose pose_between(const HeadPose *from, const HeadPose *to, double share)
 {
     HeadPose pose = {.translation = {0}};
@@ -172,7 +173,7 @@ static void symplectic_euler(TwinStrand *strand, const TwinStep *step, const Hea
                              const SectionParams *params)
 {
     Vec force[TWIN_MAX + 1] = {{0}};
-    double softness = 0; // a quarter of an average link
+    double softness = 0; // a quarter of an average link's length
     for (int j = 1; j < strand->n; ++j) softness += strand->length[j] / (strand->n - 1) / 4;
     for (int j = 1; j < strand->n; ++j) {
         Link link = link_of(strand, head, params, j);

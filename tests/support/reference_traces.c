@@ -96,7 +96,7 @@ int traces_compare(const char *algorithm, const char *algo, const char *variant,
     return count;
 }
 
-// e^{-c' dt} = 1 - c dt, and forces scaled so that they gain the same speed.
+// Sets e^{-c' dt} = 1 - c dt, and scales forces so that they give the same velocity.
 void traces_imitate_explicit_drag(HairFixture *fixture)
 {
     double dt = fixture->step.dt, c = (double)fixture->params.drag;

@@ -5,13 +5,13 @@
 
 #include "support/hair_fixture.h"
 
-// Steps the solver through every trace of `algorithm` and fails where a state is off by more than
-// 16 times what float32 usually costs there (the trace says), or 2^-19 of the length. `k_style`
-// (1/s^2) goes to style_stiffness with style 1/2. `prepare`, which may be NULL, changes the fixture
-// before the first step. Gives the number of traces.
+// Steps the solver through every trace of `algorithm`. Fails if a state's error exceeds 16 times
+// the usual float32 error there (which the trace states), or 2^-19 of the length. `k_style` (1/s^2)
+// is passed to style_stiffness with style 1/2. `prepare`, which may be NULL, changes the fixture
+// before the first step. Returns the number of traces.
 int traces_compare(const char *algorithm, const char *algo, const char *variant,
                    void (*prepare)(HairFixture *fixture));
 
-// To be passed as `prepare` where the traces have explicit drag v += (g + (w - v) c) dt, which the
+// To be passed as `prepare` for traces with explicit drag v += (g + (w - v) c) dt, which the
 // program's exact drag imitates with other constants.
 void traces_imitate_explicit_drag(HairFixture *fixture);

@@ -16,7 +16,7 @@ static void subtract(const Vec a, const Vec b, Vec c)
     for (int k = 0; k < 3; ++k) c[k] = a[k] - b[k];
 }
 
-// x turned by the smallest rotation that brings the direction of `from` to that of `to`.
+// Rotates x by the smallest rotation that takes the direction of `from` to that of `to`.
 static void turn_between(const Vec from, const Vec to, const Vec x, Vec result)
 {
     Vec axis, side;
@@ -33,8 +33,8 @@ static void turn_between(const Vec from, const Vec to, const Vec x, Vec result)
         result[k] = cos(angle) * x[k] + sin(angle) * side[k] + along * axis[k];
 }
 
-// Solves the dense system; `matrix` and `right` (columns of 3) are destroyed, the solution is in
-// `right`.
+// Solves the dense system. `matrix` and `right` (3 columns) are overwritten; `right` becomes the
+// solution.
 static void solve(int size, double (*matrix)[TWIN_MAX], Vec *right)
 {
     for (int p = 0; p < size; ++p)
@@ -51,15 +51,15 @@ static void solve(int size, double (*matrix)[TWIN_MAX], Vec *right)
         }
 }
 
-// What the head does to a strand in a step.
+// The motion of a strand with the head in a step.
 typedef struct Carried {
     Vec style[TWIN_MAX]; // positions of the style at the step's end
-    Vec rest[TWIN_MAX];  // its segments
-    double shock;        // share of the root's rigid motion that the whole strand takes part in
+    Vec rest[TWIN_MAX];  // segments of the style
+    double shock;        // share of the root's rigid motion that is applied to the whole strand
     Vec root_old, first_old;
 } Carried;
 
-// `threshold` in metres.
+// `threshold` is in metres.
 static void carry(Carried *carried, const TwinStrand *strand, const TwinStep *step,
                   double coefficient, double threshold)
 {
@@ -76,7 +76,7 @@ static void carry(Carried *carried, const TwinStrand *strand, const TwinStep *st
     carried->shock = vec_norm(jerk) > threshold ? 1 : coefficient;
 }
 
-// A point moved by the strand's share of the root's motion.
+// Moves a point by the strand's share of the root's motion.
 static void shake(const Carried *carried, const Vec x, Vec result)
 {
     Vec offset, turned;
@@ -87,7 +87,7 @@ static void shake(const Carried *carried, const Vec x, Vec result)
             (1 - carried->shock) * x[k] + carried->shock * (carried->style[0][k] + turned[k]);
 }
 
-// v becomes what the step has moved, as a velocity; vertex 1's is the head's.
+// v becomes the displacement of the step over dt; vertex 1 has the head's velocity.
 static void finish(TwinStrand *strand, const Carried *carried, const Vec *from, const Vec *x,
                    double dt, double clamp, int power)
 {
@@ -104,7 +104,7 @@ static void finish(TwinStrand *strand, const Carried *carried, const Vec *from, 
     memcpy(strand->x, x, (size_t)strand->n * sizeof(Vec));
 }
 
-// A vertex between a segment and one more than twice as long gives way by less.
+// A vertex between a segment and a segment more than twice as long moves less.
 static double lever(double here, double next)
 {
     return fmin(1, 2 * here / next);
@@ -125,8 +125,8 @@ static void keep_local_shape(const Carried *carried, int n, double share, Vec *x
     }
 }
 
-// By how much of itself each segment must draw its ends together (or push them apart, if negative):
-// Newton's step towards the lengths, J J^T lambda = (|s_j|^2 - l_j |s_j|).
+// The share of itself by which each segment must draw its ends together (or push them apart, if
+// negative): Newton's step towards the lengths, J J^T lambda = (|s_j|^2 - l_j |s_j|).
 static void find_tensions(const TwinStrand *strand, const Vec *s, double *lambda)
 {
     static double matrix[TWIN_MAX][TWIN_MAX];
@@ -142,8 +142,8 @@ static void find_tensions(const TwinStrand *strand, const Vec *s, double *lambda
     for (int j = 2; j < n; ++j) lambda[j] = right[j - 2][0];
 }
 
-// What draws together does so along the segments as they will be, (I + K) y' = y - pushes; what
-// pushes apart along those that are.
+// Contractions act along the new segments, (I + K) y' = y - pushes; pushes act along the current
+// segments.
 static void reach_lengths(const TwinStrand *strand, Vec *y)
 {
     static double matrix[TWIN_MAX][TWIN_MAX];
@@ -167,7 +167,8 @@ static void reach_lengths(const TwinStrand *strand, Vec *y)
     solve(n - 2, matrix, y + 2);
 }
 
-// The local stiffness k at style 0.5; else that of another firmness, k/(1 - 3k/4), times the odds.
+// The local stiffness: k at style 0.5; at another style, k/(1 - 3k/4) is multiplied by the odds
+// style/(1 - style).
 static double local_stiffness(const SectionParams *params)
 {
     double odds = (double)params->style / (1 - (double)params->style);
@@ -188,8 +189,8 @@ static double damping(const TwinStep *step, const SectionParams *params)
     return step->drag + (double)params->tressfx_damping * (double)params->tressfx_damping_rate;
 }
 
-// Neighbours give each other a share of what their velocities differ by. Vertex 1 is the head's;
-// the others' are relative to the strand's share of the root's motion.
+// Neighbours exchange a share of the difference of their velocities. Vertex 1 has the head's
+// velocity; the others' velocities are relative to the strand's share of the root's motion.
 static void exchange_velocities(TwinStrand *strand, double shock, double share)
 {
     for (int k = 0; k < 3; ++k) strand->v[1][k] *= 1 - shock;
@@ -214,7 +215,8 @@ void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const Se
     double firm = local / (1 - 0.75 * local) * 2 / passes * frames * frames;
     double share = fmin(firm / (1 + 0.75 * firm), (double)params->tressfx_local_max);
     double shape = global_spring(params) * frames * frames;
-    // The threshold is an acceleration and the clamp a speed: both are meant for frames of 1/60 s.
+    // The threshold is an acceleration and the clamp a speed, and both are defined for frames of
+    // 1/60 s.
     carry(&carried, strand, step, (double)params->tressfx_vsp_coeff,
           0.01 * (double)params->tressfx_vsp_accel_threshold * frames * frames);
     share *= (double)params->tressfx_local_share;
@@ -250,7 +252,7 @@ static void keep_edge(Vec a, Vec b, double length, double share_a, double share_
         a[k] += share_a * stretch * delta[k], b[k] -= share_b * stretch * delta[k];
 }
 
-// (t x w) x t; TressFX's unit of length is the centimetre here.
+// (t x w) x t. TressFX's unit of length is the centimetre here.
 static void blow(const TwinStep *step, int n, Vec *x)
 {
     for (int j = 2; j < n - 1; ++j) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// TressFX's solver in double precision, one strand on the CPU, written from the definitions
-// (docs/solver_derivations.md) and not from the shader: in world coordinates, rotations by axis and
-// angle, linear systems by dense elimination.
+// TressFX's solver in double precision, for one strand on the CPU, written from the definitions
+// (docs/solver_derivations.md) and not from the shader: in world coordinates, with rotations by
+// axis and angle, and linear systems solved by dense elimination.
 #pragma once
 
 #include "support/twin.h"
 
-// Are TwinFunctions.
+// TwinFunctions.
 void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step,
                               const SectionParams *params);
 void reference_tressfx_4(TwinStrand *strand, const TwinStep *step, const SectionParams *params);

@@ -11,7 +11,7 @@
 
 enum { ARGUMENTS_MAX = 32 };
 
-// Reads a command line given as one text, split at blanks, behind the program's name.
+// Reads a command line, given as one text that is split at blanks, without the program's name.
 static Result read_arguments(Scene *scene, const char *line, Error *error)
 {
     char copy[2000];

@@ -61,7 +61,7 @@ void shadow_stage_close(ShadowStage *stage)
     strands_destroy(&stage->strands);
 }
 
-// --- By lanes.
+// --- Maps of lanes.
 
 typedef struct LaneScene {
     LaneShadowScene scene;
@@ -69,7 +69,7 @@ typedef struct LaneScene {
     PlacedMesh mesh;
 } LaneScene;
 
-// Into memory that stays where it is.
+// Copies a buffer to memory whose address does not change.
 static void *read_buffer(const GpuBuffer *buffer, void **copy)
 {
     if (!buffer->buffer) return NULL;
@@ -152,7 +152,7 @@ static float *find_by_lanes(ShadowStage *stage, const float (*points)[4], uint32
     return light.shares;
 }
 
-// --- By either way.
+// --- Both ways.
 
 uint32_t shadow_stage_again(ShadowStage *stage)
 {

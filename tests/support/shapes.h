@@ -5,8 +5,8 @@
 #include "mesh/scalp.h"
 #include "mesh/surface.h"
 
-// A sphere about the origin by rings and sectors, and two poles: its vertices lie on it, triangles
-// face outward. The test fails if memory is short.
+// A sphere around the origin, made of rings and sectors, and two poles. Its vertices lie on the
+// sphere; triangles face outwards. The test fails if memory is short.
 void shapes_make_sphere(Mesh *mesh, int rings, int sectors, float radius);
 
 // The mesh of scalp_make_mesh, and its surface. The test fails if memory is short.

@@ -75,7 +75,7 @@ void simulation_fixture_go(SimulationFixture *fixture, int frame)
     simulation_pose(&fixture->simulation);
 }
 
-// FNV-1a.
+// FNV-1a hash.
 static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
 {
     for (size_t i = 0; i < size; ++i)

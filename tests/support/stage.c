@@ -133,7 +133,7 @@ uint64_t stage_base_version(void)
                                                   : stage_passes()->base.version;
 }
 
-// Light of some colour from every side, and a bright spot.
+// Light from all directions in several colours, with a bright spot.
 static const Environment *find_environment(void)
 {
     enum { HEIGHT = 8, WIDTH = 2 * HEIGHT };

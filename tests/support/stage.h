@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One studio for all tests of a program about the renderer; every claim is made of each rasteriser.
+// A studio for tests of the renderer: every claim is tested with each rasteriser.
 #pragma once
 
 #include "support/studio.h"
@@ -13,11 +13,11 @@
 enum { SIDE = 256 }; // px, of the picture
 
 extern const RendererOptions TRANSPARENT, BLACK;
-extern Raster raster; // that draws now
-extern Studio studio; // each test leaves it without hair
+extern Raster raster; // the current rasteriser
+extern Studio studio; // without hair at the beginning of each test
 
-// A test that clears the studio behind it; runs all with quads and with blocks, with compute too,
-// or with one alone, and gives how many failed.
+// CLAIM: a test that clears the studio at its end. stage_run: runs all tests with quads and blocks,
+// with compute, too, or with a single rasteriser, and returns the number of failures.
 #define CLAIM(name) cmocka_unit_test_teardown(name, clear_studio)
 #define stage_run(tests)                                                                           \
     stage_run_count(tests, sizeof(tests) / sizeof(tests)[0], RASTER_QUADS, RASTER_BLOCKS)
@@ -28,61 +28,64 @@ extern Studio studio; // each test leaves it without hair
 int stage_run_count(const struct CMUnitTest *tests, size_t count, Raster first, Raster last);
 int clear_studio(void **state);
 
-// Opens the studio anew, in a new context.
+// Opens the studio again, with a new context.
 void stage_open(const RendererOptions *options);
 
-// A new renderer with these options and the rasteriser in turn; hair stays.
+// Makes a new renderer with these options and the current rasteriser; hair stays.
 void use(const RendererOptions *options);
 
-// A white strand of 5 vertices from `from` to `to` (px), `radius` in px. Its item's number.
+// A white strand of 5 vertices from `from` to `to`; `radius` in px. Returns its item's number.
 uint32_t add_line(const float from[3], const float to[3], float radius, float opacity);
 
-// Curved strands all over the picture, lit. `order` gives the place of each, NULL: as they are
-// made.
+// Curved strands all over the picture, lit. `order` gives the place of each strand; NULL: in the
+// order of creation.
 void add_tangle(uint32_t count, float radius, float opacity, const uint32_t *order);
 
-// The same of strands so bent and so short that no rasteriser leaves out a point of them: 1 px to
-// either side of a straight line from point to point, 6 px apart.
+// Like add_tangle, with strands so bent and short that no rasteriser leaves out a point: points are
+// 6 px apart and 1 px to either side of a straight line.
 void add_zigzags(uint32_t count, float radius, float opacity);
 
-// So many strands through the middle, all in the same place.
+// `count` strands through the middle, all at the same place.
 Strands crowd(uint32_t count);
 
-// What the backend of quads and compute has, or of blocks. Fails the test if another one draws.
+// The state of the backend of quads and compute, and of blocks. Fails the test if another backend
+// draws.
 struct Passes *stage_passes(void);
 struct Lanes *stage_lanes(void);
 
-// The times that mesh and floor were drawn, by any and by blocks.
+// The number of times that mesh and floor were drawn, by any backend and by blocks.
 uint64_t stage_base_version(void);
 uint64_t stage_lanes_base_version(void);
 
-// What 16 points of an item's hair showed in the last picture by blocks of the light among hair.
+// The light among hair that 16 points of an item's hair showed in the last picture of blocks.
 void stage_lanes_show(uint32_t item, const float x[3][STRAND_TILE],
                       const float tangent[3][STRAND_TILE], float seen[3][STRAND_TILE]);
 
-// Blocks are to draw what mesh and floor hide, too.
+// Lets blocks also draw hair that mesh and floor hide.
 void stage_lanes_draw_hidden(bool on);
 
-// What lies around: nothing, a blue sky, or an environment that differs in all directions.
+// The ambient light: none, a blue sky, or an environment that differs in all directions.
 typedef enum StageSky { STAGE_DARK, STAGE_SKY, STAGE_ENVIRONMENT } StageSky;
 Ambient stage_ambient(StageSky sky);
 
-// Draws by these lights in such light, as studio_view shows it.
+// Draws with these lights and this ambient light, with studio_view.
 void stage_draw_lit(const Light *lights, uint32_t count, StageSky sky);
 
-// Draws; a copy of the bytes, which the caller frees. Draws, and the bytes must be those.
+// draw_copy draws and returns a copy of the bytes; the caller frees it. assert_draws_the_same draws
+// and compares the bytes.
 uint8_t *draw_copy(size_t *size);
 void assert_draws_the_same(const uint8_t *expected, size_t size);
 
-// Draws nothing: the sum of opacity over the pixels of the last picture.
+// The sum of opacity over the pixels of the last picture. Draws nothing.
 double alpha_sum(void);
 
-// 0..255 for linear light of 0..1 (IEC 61966-2-1).
+// The sRGB level, 0..255, of linear light 0..1 (IEC 61966-2-1).
 double srgb(double linear);
 
-// Value i of an image of floats; value i of any image in levels of 255, light as sRGB.
+// float_at: value i of an image of floats. level_at: value i of any image in levels of 255; light
+// is converted to sRGB.
 float float_at(const Image *image, size_t i);
 double level_at(const Image *image, size_t i);
 
-// A mesh in the plane z = 0, `half` px to each side.
+// A mesh in the plane z = 0, reaching `half` px to each side.
 Mesh make_square(float half);

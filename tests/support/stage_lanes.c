@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What of a stage looks into the backend of blocks, some names of which passes have, too.
+// The functions of a stage that read the state of the blocks backend. They are in a file of their
+// own, because some of its names occur in src/passes, too.
 #include "lanes/lanes.h"
 #include "lanes/light_grid_show.h"
 #include "support/stage.h"

@@ -114,7 +114,8 @@ void twin_put(HairFixture *fixture, const TwinStrand *twins, int count)
 {
     SolverBuffer buffers[SOLVER_MAX_BUFFERS];
     const HairBatch *batch = &fixture->hair.batches[0];
-    solver_pose(&fixture->solver, &fixture->step.head); // else the first pose would write the style
+    solver_pose(&fixture->solver,
+                &fixture->step.head); // otherwise the first pose would write the style
     assert_true(solver_buffers(&fixture->solver, 0, buffers) >= 2);
     assert_true(buffers[0].kind == SOLVER_POINTS && buffers[1].kind == SOLVER_VELOCITIES);
     for (int i = 0; i < 2; ++i) {
@@ -186,7 +187,7 @@ static TwinStep twin_step(const HairFixture *fixture)
     return step;
 }
 
-// The farthest that a drawn strand is from its twin.
+// The largest distance of a drawn strand from its twin.
 static double find_distance(HairFixture *fixture, const TwinPair *pair, const TwinStrand *twins)
 {
     const bool rebuilt = pair->rebuilt && !fixture->params.stretch_drawn;
@@ -205,7 +206,7 @@ static double find_distance(HairFixture *fixture, const TwinPair *pair, const Tw
     return worst;
 }
 
-// The same after the case's steps.
+// The largest distance after the case's steps.
 static double run_case(const TwinPair *pair, const TwinCase *trial, bool uneven)
 {
     static Vec start[CURLS * TWIN_MAX];
