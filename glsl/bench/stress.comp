@@ -41,7 +41,7 @@ void main()
     float along = 0.0, short_by = 0.0, lifted = 0.0, shortest = HUGE, highest = 0.0, kinetic = 0.0,
           potential = 0.0, budget = 0.0, began = 0.0, size = largest(root), off = 0.0, move = 0.0;
     bool finite = size < HUGE;
-    // Vertex 1, which the head carries if `carried` is 1.
+    // Vertex 1 is carried by the head if `carried` is 1.
     vec4 lead = texelFetch(rest, base + STRAND_TILE);
     float raised = stress_params.carried * (strength * lead.w + lead.w * dot(g, lead.xyz));
     for (int j = 1; j < n; ++j) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where particle j of strand s lies in a batch of strands of n particles (hair_address of hair.h;
-// needs shared.h).
+// The address of particle j of strand s in a batch of strands with n particles (hair_address of
+// hair.h; needs shared.h).
 
 int particle_address(int s, int j, int n)
 {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Random values that belong to a strand, the same in C and GLSL.
+// Random values for a strand, the same in C and GLSL.
 #ifdef __STDC__
 #pragma once
 #endif
 #include "common/shared_math.h"
 
-// Uniform bits from a number, equal on every machine (the finaliser "lowbias32" of C. Wellons).
+// Uniform random bits from a number, the same on every machine (the finaliser "lowbias32" of C.
+// Wellons).
 SHARED_FUNCTION uint hash_bits(uint id)
 {
     id = (id ^ (id >> 16)) * 0x7feb352du;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A driver that rounds otherwise, for tests (gpu/assume.h): results of the functions for which GLSL
-// 4.30 allows errors are moved by ULPS units in the last place, up or down by the argument's bits.
-// Included before all else, so that no shader knows.
+// Imitates a driver with other rounding, for tests (gpu/assume.h). The results of functions for
+// which GLSL 4.30 permits errors are moved by ULPS units in the last place; a hash of the argument
+// decides whether up or down. This file is included first, so that shaders need no changes.
 float perturbed(float y, float x)
 {
     uint hash = floatBitsToUint(x) * 2654435761u;
     int step = (hash >> 31) != 0u ? ULPS : -ULPS;
-    // Not what is 0, 1 or no number: those are exact everywhere.
+    // 0, 1, infinities and NaN stay, because they are exact on every driver.
     return abs(y) > 1e-30 && abs(y) < 1e30 && y != 1.0 ? intBitsToFloat(floatBitsToInt(y) + step)
                                                        : y;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Arithmetic that C and GLSL both do: each formula and constant stands here once, in what both
-// languages understand. Literals of functions end in f; constants are double in C, for references.
-// In C functions are inlined into loops over lanes, which become vector instructions: no branches.
+// Arithmetic that both C and GLSL need. Each formula and constant is here once, in the common
+// subset of the two languages. Literals in functions end in f; constants are double in C, for
+// reference code. In C the functions are inlined into loops over lanes that are vectorised, so they
+// must not branch.
 #ifdef __STDC__
 #pragma once
 #include <math.h>
@@ -19,14 +20,14 @@ typedef uint32_t uint;
 #define SHARED_STRUCT(name)                                                                        \
     typedef struct name name;                                                                      \
     struct name
-SHARED_FUNCTION float SHARED_MAX(float a, float least) // `least` if a is not a number
+SHARED_FUNCTION float SHARED_MAX(float a, float least) // returns `least` if a is NaN
 {
     return a > least ? a : least;
 }
 SHARED_FUNCTION float SHARED_MIN(float a, float most) { return a < most ? a : most; }
-// 2^x for -2^31 < x <= 0, no less than 2^-126: of the fraction -1/2 .. 1/2 the Taylor series to the
-// sixth power (1.2e-7 off), the rest as exponent bits. (A bound for x itself would be a jump, with
-// which compilers do not vectorise a loop.)
+// 2^x for -2^31 < x <= 0, at least 2^-126. The fraction, -1/2 .. 1/2, goes through a Taylor series
+// to the sixth power (error 1.2e-7), the integer part becomes the exponent bits. (Clamping x itself
+// would be a branch, which keeps compilers from vectorising the loop.)
 SHARED_FUNCTION float SHARED_EXP2(float x)
 {
     int whole = (int)(x - 0.5f), bounded = whole > -126 ? whole : -126;
@@ -69,9 +70,9 @@ SHARED_FUNCTION uint BITS_OF_FLOAT(float value)
 #define PI    3.14159265358979323846
 #define LOG2E 1.44269504 // exp(x) = exp2(LOG2E * x)
 
-// --- Tone curves, from light >= 0 of one channel to a linear colour value.
+// --- Tone curves, from the light of one channel (>= 0) to a linear colour value.
 
-// Reinhard et al. 2002, equation 4: light of TONE_WHITE becomes 1.
+// Reinhard et al. 2002, equation 4: a light of TONE_WHITE becomes 1.
 #define TONE_WHITE 4.0
 
 SHARED_FUNCTION float tone_reinhard(float c)
@@ -97,7 +98,7 @@ SHARED_FUNCTION float tone_filmic(float c)
 // --- sRGB (IEC 61966-2-1): value = SRGB_SLOPE linear up to SRGB_KNEE, then
 // (1 + SRGB_OFFSET) linear^(1 / SRGB_POWER) - SRGB_OFFSET.
 #define SRGB_KNEE     0.0031308 // linear
-#define SRGB_KNEE_OUT 0.04045   // the same in sRGB
+#define SRGB_KNEE_OUT 0.04045   // the same point in sRGB
 #define SRGB_SLOPE    12.92
 #define SRGB_OFFSET   0.055
 #define SRGB_POWER    2.4
@@ -115,7 +116,8 @@ static inline double srgb_encode(double linear)
                                : (1 + SRGB_OFFSET) * pow(linear, 1 / SRGB_POWER) - SRGB_OFFSET;
 }
 
-// In float arithmetic, as colours of scenes have been since they were first drawn.
+// In float arithmetic. The colours of scenes have always been computed this way, so images depend
+// on it.
 static inline float linear_from_srgb(float value)
 {
     return value <= FLOAT(SRGB_KNEE_OUT)
@@ -129,9 +131,9 @@ static inline void linear_from_srgb_color(const float srgb[3], float linear[3])
 }
 #endif
 
-// Not the driver's own conversion: some approximate it. Nor pow, which costs CPU drivers as much as
-// a dozen ribbons: the curve from SRGB_KNEE to 1 as a sum of c and three roots, by Remez' exchange;
-// it is off by 0.012 of one of 255 levels at most.
+// Drivers' own conversions are not used, because some are approximate. pow would cost a CPU driver
+// as much as a dozen ribbons. Instead, the curve from SRGB_KNEE to 1 is a sum of c and three roots,
+// fitted by Remez' exchange algorithm; the error is at most 0.012 of one of 255 levels.
 SHARED_FUNCTION float srgb_from_linear(float c)
 {
     c = SHARED_MIN(SHARED_MAX(c, 0.0f), 1.0f);

@@ -13,8 +13,8 @@ vec3 closer(vec3 p, vec3 a, vec3 b)
     return dot(to_a, to_a) <= dot(to_b, to_b) ? a : b;
 }
 
-// Over the triangle it is the foot of the perpendicular, elsewhere on an edge. cross(edge, normal)
-// points outward.
+// The foot of the perpendicular if it is inside the triangle, otherwise a point on an edge.
+// cross(edge, normal) points outwards.
 vec3 closest_on_triangle(vec3 p, vec3 a, vec3 b, vec3 c)
 {
     vec3 n = cross(b - a, c - a);

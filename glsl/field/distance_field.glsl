@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The distance to a mesh that moves with the head, from samples on a grid in the head's frame:
-// trilinear, with the gradient of just that (needs collide_params.h, rigid.glsl). Beyond the grid,
-// which the mesh does not reach, the distance is from the grid's nearest point on.
+// The distance to a mesh that moves with the head: trilinear interpolation of a grid of samples in
+// the head's frame, with the exact gradient of the interpolation (needs collide_params.h,
+// rigid.glsl). The mesh does not reach the border of the grid; beyond it, the distance is that at
+// the nearest point of the grid plus the way there.
 //
-// BOUND 1: the mesh deforms, and a sample has three numbers more: how far the surface that is
-// nearest to it has come in the step, in the head's frame.
+// BOUND 1: the mesh deforms. A sample then has three more numbers, the displacement of its nearest
+// surface in the step, in the head's frame.
 
 layout(binding = BIND_FIELD) uniform samplerBuffer field;
 
 #if BOUND
-// How far the surface near p has come in the step beside moving with the head, in the frame that
-// the head had before: from the nearest sample.
+// The displacement in the step of the surface near p, beyond moving with the head, in the head's
+// frame at the step's start. Taken from the nearest sample.
 vec3 field_moved(vec3 p)
 {
     vec4 to_world = collide_params.head_rotation, to_head = vec4(-to_world.xyz, to_world.w);
@@ -35,7 +36,7 @@ float field_distance(vec3 p, out vec3 normal)
          f = in_grid - cell;
     int row = int(size.x), slice = row * int(size.y),
         at = int(cell.z) * slice + int(cell.y) * row + int(cell.x);
-    // Samples of the cell's corners, x from left to right, in rows of y and z.
+    // Samples of the cell's corners; x goes from left to right, y and z are the rows.
     vec4 left = vec4(texelFetch(field, at).x, texelFetch(field, at + row).x,
                      texelFetch(field, at + slice).x, texelFetch(field, at + slice + row).x);
     vec4 right =

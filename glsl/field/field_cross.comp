@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Where columns of grid points along an axis cross the surface: +1 at the first point behind a
-// crossing into the mesh, -1 behind one out of it. A work item is a triangle and a square of
-// columns.
+// Finds where columns of grid points along an axis cross the surface: +1 at the first point behind
+// a crossing into the mesh, -1 behind a crossing out of it. A work item is a triangle and a square
+// of columns.
 //
-// Whether a column passes a triangle is decided by the side of its three edges. Each edge is
-// evaluated from its lexically first end, so that the two triangles at it get the same number, and
-// a column exactly on it counts as on its left: that is as if all columns were moved by (-e^2, e),
-// e -> 0, and no column slips between triangles or counts twice.
+// The sides of its three edges decide whether a column passes through a triangle. Each edge is
+// evaluated from its lexically first end, so both of its triangles get the same number, and a
+// column exactly on the edge counts as being on its left. This is as if all columns were moved by
+// (-e^2, e), e -> 0, so no column slips between triangles or counts twice.
 #include "field/field.glsl"
 
-// triangle, axis, first column
+// Triangle, axis, first column.
 layout(std430, binding = 0) readonly buffer Items { uvec4 items[]; };
 layout(std430, binding = 1) buffer Crossings { int crossings[]; };
 
-// +1 if p is on the left of the way from a to b, else -1.
+// +1 if p is to the left of the line from a to b, otherwise -1.
 int side(vec2 a, vec2 b, vec2 p)
 {
     bool turned = a.x > b.x || (a.x == b.x && a.y > b.y);

@@ -6,7 +6,7 @@
 #include "field/field.glsl"
 #include "field/closest.glsl"
 
-// triangle, block's first point
+// Triangle, first point of the block.
 layout(std430, binding = 0) readonly buffer Items { uvec4 items[]; };
 layout(std430, binding = 1) buffer Squares { uint squares[]; };
 layout(std430, binding = 2) buffer Nearest { uint nearest[]; };

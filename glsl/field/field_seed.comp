@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The closest surface point of each grid point that has a nearest triangle; w: 1, else 0.
+// The closest surface point of each grid point that has a nearest triangle; w is 1 for these points
+// and 0 for others.
 #include "field/field.glsl"
 #include "field/closest.glsl"
 

@@ -10,7 +10,7 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(std430, binding = BIND_POSITION_OUT) buffer Points { vec4 points[]; };
 layout(std430, binding = BIND_STATE_OUT) buffer Vectors { vec4 vectors[]; };
 #if BOUND
-layout(binding = BIND_FRAMES) uniform samplerBuffer motions; // a strand: R, T, V, W
+layout(binding = BIND_FRAMES) uniform samplerBuffer motions; // per strand: R, T, V, W
 #endif
 
 void main()

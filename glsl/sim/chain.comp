@@ -33,22 +33,23 @@
 #if BENDS
 #include "sim/bend.glsl"
 #endif
-const float ALLOWED = 0.005; // share of energy
+const float ALLOWED = 0.005; // share of the energy
 #define SLOWS_AGAIN 0
 #include "sim/energy_account.glsl"
 
 const float THETA = 0.25;
-const float STIFF = 8.0;    // the tension beyond which theta grows
-const float MOST_OFF = 0.5; // of a length, before tractrices take over
+const float STIFF = 8.0;    // tension above which theta grows
+const float MOST_OFF = 0.5; // in lengths; above it tractrices take over
 
-// Where particle j would go without constraints, relative to the new root.
+// The position of particle j without constraints, relative to the new root.
 vec3 predicted(Strand strand, int j, inout vec3 style)
 {
     vec3 q = fetch_position(strand, j);
     return (q - strand.root) + predicted_move(strand, j, q, style);
 }
 
-// Root to tip: predictions; the tensions' rows. Gives the bending energy.
+// From root to tip: predicts positions and sets up the rows of the tensions. Returns the bending
+// energy.
 float predict(Strand strand)
 {
     int last = LAST;
@@ -79,7 +80,7 @@ float predict(Strand strand)
 #endif
 }
 
-// What corrections before this step have found missing in the tension of segment j (bend.glsl).
+// The part of segment j's tension that corrections of earlier steps found missing (bend.glsl).
 float carried_tension(Strand strand, int j)
 {
 #if BENDS
@@ -89,8 +90,8 @@ float carried_tension(Strand strand, int j)
 #endif
 }
 
-// At rest neither the tension nor what step 1 takes for it is more than the forces on all that is
-// beyond.
+// At rest neither the tension nor its approximation in step 1 exceeds the sum of the forces beyond
+// the segment.
 float limit_carried(Strand strand, int j, float carried)
 {
     float move = strand.dt * length(strand.push) * (1.0 - strand.spring.pull) +
@@ -105,7 +106,7 @@ float implicit_share(float tension)
     return THETA + THETA * beyond / (beyond + STIFF);
 }
 
-// Tip to root: tensions; rows of the positions.
+// From tip to root: solves for the tensions and sets up the rows of the positions.
 void pull_implicitly(Strand strand)
 {
     float lambda = 0.0, factor_beyond = 0.0, implicit_beyond = 0.0;
@@ -144,7 +145,8 @@ void pull_implicitly(Strand strand)
     }
 }
 
-// Root to tip: positions, of which only the segments are needed on; rows of the first correction.
+// From root to tip: solves for the positions, of which only the segments are used further, and sets
+// up the rows of the first correction.
 void correct(Strand strand)
 {
     int last = LAST;
@@ -164,14 +166,14 @@ void correct(Strand strand)
     }
 }
 
-// A correction takes t_j = lambda_j s_j out of segment j, and gives it to both neighbours (the root
+// A correction removes t_j = lambda_j s_j from segment j and gives it to both neighbours (the root
 // does not move): s_j += t_{j-1} - 2 t_j + t_{j+1}, which is known one segment later. In the two
-// sweeps that apply one, `here` is segment j's neighbour.
+// sweeps that apply a correction, `here` is the neighbour of segment j.
 struct Corrected {
     vec3 s, t;
 };
 
-// Tip to root: the first correction is applied; rows of the second.
+// From tip to root: applies the first correction and sets up the rows of the second.
 void correct_again(Strand strand)
 {
     float lambda = 0.0, factor_beyond = 0.0, factor;
@@ -179,7 +181,7 @@ void correct_again(Strand strand)
     vec3 t_beyond = vec3(0.0), s_beyond = vec3(0.0);
     Row row = NO_ROW;
     for (int j = LAST; j >= 0; --j) {
-        vec4 k = recall(j); // j = 0: zero
+        vec4 k = recall(j); // zero if j = 0
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
 #if BENDS
@@ -199,8 +201,8 @@ void correct_again(Strand strand)
     }
 }
 
-// Keeps segment j scaled to its length l. Gives how far it is off, as bits that order like the
-// number: above all of them a NaN.
+// Stores segment j, scaled to its length l. Returns its length error, as bits that order like the
+// number; a NaN comes last.
 int finish_segment(int j, vec3 s, float l)
 {
     float ss = dot(s, s), inverse = l * inversesqrt(ss);
@@ -208,7 +210,7 @@ int finish_segment(int j, vec3 s, float l)
     return floatBitsToInt(abs(ss * inverse - l * l) / (l * l));
 }
 
-// Root to tip: the second correction is applied. Gives how far the worst segment is off.
+// From root to tip: applies the second correction. Returns the largest length error.
 int finish(Strand strand)
 {
     int last = LAST, worst = 0;
@@ -230,15 +232,15 @@ int finish(Strand strand)
                                      fetch_rest(strand, last).w));
 }
 
-// The velocity first: compilers may delay the fetch of q up to its use, beyond a store to the
-// buffer that it comes from.
+// Stores the velocity first: compilers may delay the fetch of q until it is used, which could be
+// after a store to the buffer that q comes from.
 void put(Strand strand, int j, vec3 x, vec3 q, float carried)
 {
     velocities[strand.address + j * STRAND_TILE] = vec4((x - q) / strand.dt, carried);
     positions[strand.address + j * STRAND_TILE] = vec4(x, 1.0);
 }
 
-// Root to tip: the strand is rebuilt and written.
+// From root to tip: rebuilds the strand and writes it.
 void write(Strand strand, inout Account account)
 {
     int last = LAST;
@@ -264,9 +266,9 @@ void write(Strand strand, inout Account account)
 #endif
 }
 
-// Two passes of tractrices (those of hybrid.comp) instead. Rolled loops, so that a CPU driver,
-// where all lanes go through every branch, leaves them after a round where no strand needs them.
-// What is kept on the way lies where the velocities will.
+// Two passes of tractrices (as in hybrid.comp) instead. Loops are not unrolled: on a CPU driver all
+// lanes go through every branch, and this way they leave the loops after one round if no strand
+// needs them. Intermediate results are stored in place of the velocities.
 void rescue(Strand strand, inout Account account)
 {
     int last = int(step_params.vertex_count - 1u);
@@ -284,7 +286,7 @@ void rescue(Strand strand, inout Account account)
         if (j > 1) p = velocities[strand.address + (j - 1) * STRAND_TILE].xyz;
         float l = fetch_rest(strand, j).w;
         vec3 d = direction(q_before - q), move = limit_move(y - (q + p - q_before));
-        // far off where the move pushes exactly along the segment
+        // inaccurate if the move pushes exactly along the segment
         d = direction(tractrix_turn(d, l, move));
         y += l * d;
         velocities[strand.address + j * STRAND_TILE] = vec4(-d, 0.0);

@@ -51,9 +51,9 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 #if MODE == SEGMENTS
-// unit direction, length
+// Unit direction, length.
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
-// a strand: position, times limited; velocity
+// Per strand: position and number of limited moves; velocity.
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; };
 #endif
 #if MODE == PARTICLES || MODE == DRAWN
@@ -73,10 +73,10 @@ layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
 #endif
 #if MODE == PARTICLES || MODE == SEGMENTS
 layout(binding = BIND_REST) uniform samplerBuffer rest;
-// A particle: where it was at the end of step w. In the root's place: split's tip.
+// Per particle: its position at the end of step w. In the root's place: split's tip.
 layout(std430, binding = BIND_CONTACTS) buffer Contacts { vec4 contacts[]; };
-// A strand, of its last step with contacts: their number, the step; of all steps, as bits of
-// floats: deepest before and after the push.
+// Per strand, for its last step with contacts: number of contacts and the step. For all steps, as
+// bits of floats: largest depth before and after the push.
 layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
 #endif
 
@@ -96,18 +96,18 @@ layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contact_texels;
 #endif
 
 const int ROUNDS = 3;
-// of a link: as exactly its end is put on a surface
+// Accuracy with which the end of a link is put on a surface, in lengths of the link.
 const float EXACT = 1e-6;
-// way out of a collider for each way along the strand: a root's depth is left after twice that
-// length
+// Depth that is given up per length along the strand: hair is out of a collider after twice its
+// root's depth.
 const float LEAVING = 0.5;
 
 int n = 0;
 float margin = 0.0, friction = 0.0;
 
 #if MODE == FINDING
-// Strands take this much (of the longest one's length) less than they have, or rounding and what a
-// solver leaves of its steps would be contacts.
+// Strands need this much (relative to the longest strand) less distance than required; otherwise
+// rounding and solver errors would count as contacts.
 const float SLACK = 1e-4;
 
 void main()
@@ -134,11 +134,12 @@ vec3 particle_before(int address, vec3 from)
 #endif
 }
 
-// How far a particle is allowed to be deeper than the margin, arc m behind a root that lies
+// The depth below the margin that a particle may have, at arc length `arc` behind a root that is
 // `inside` deep.
 float allowed(float inside, float arc) { return max(inside - LEAVING * arc, 0.0); }
 
-// The distance that a particle should have, arc m behind a root that lies `inside` deep.
+// The distance that a particle should have, at arc length `arc` behind a root that is `inside`
+// deep.
 float needed(int address, float inside, float arc)
 {
 #if CLEARANCE
@@ -160,7 +161,7 @@ vec3 perpendicular(vec3 unit)
                                        : cross(unit, vec3(1.0, 0.0, 0.0)));
 }
 
-// The direction of a link of length l that is to rise by `depth` along n.
+// The direction of a link of length l after its end is raised by `depth` along n.
 vec3 turned(vec3 d, vec3 normal, float depth, float l)
 {
     float along = dot(normal, d), up = clamp(along + depth / l, -1.0, 1.0);
@@ -168,14 +169,16 @@ vec3 turned(vec3 d, vec3 normal, float depth, float l)
            sqrt(1.0 - up * up) * normalise_or(d - along * normal, perpendicular(normal));
 }
 
-// What friction leaves of a motion along the surface that is pressed on it by `pressed`.
+// The motion along the surface that friction leaves, if the motion is pressed onto the surface by
+// `pressed`.
 vec3 held_back(vec3 motion, vec3 normal, float pressed)
 {
     vec3 along = motion - dot(motion, normal) * normal;
     return along * min(friction * pressed * inversesqrt(max(dot(along, along), 1e-30)), 1.0);
 }
 
-// A velocity after a contact: not into the surface, which moves by `surface`, and slower along it.
+// The velocity after a contact: not into the surface, which moves by `surface`, and slowed down
+// along it.
 vec3 velocity_after(vec3 v, vec3 surface, vec3 normal)
 {
     vec3 relative = v - surface;
@@ -184,13 +187,13 @@ vec3 velocity_after(vec3 v, vec3 surface, vec3 normal)
 }
 
 struct Strand {
-    int number, first; // its root's address
+    int number, first; // address of the root
     vec3 root;
     float longest; // m
 };
 
-// How deep any of its particles is in the collider that a call of DISTANCE gives, beyond what the
-// root's own depth allows.
+// Finds how deep any particle is in the collider of the expression DISTANCE, beyond the depth that
+// the root permits.
 #define PROBE(DISTANCE)                                                                            \
     {                                                                                              \
         vec3 p = strand.root, unused;                                                              \
@@ -206,7 +209,7 @@ struct Strand {
         deepest = max(deepest, needed(last_address, own, strand.longest) - DISTANCE);              \
     }
 
-// Whether the strand touches anything. `inside`: how deep its root lies.
+// Whether the strand touches anything. `inside`: depth of the root.
 bool touches(Strand strand, out float inside)
 {
     float deepest = -1.0, spacing = strand.longest / float(n - 1);
@@ -236,8 +239,8 @@ struct Tally {
     float contacts, found, left;
 };
 
-// Puts a particle that hangs on p by a link of length l, and is at `at`, where it has at least the
-// distance `need`. Its address is that of what is remembered of it.
+// Pushes out a particle at `at`, which hangs on p by a link of length l, until it has at least the
+// distance `need`. `address` is that of its stored contact.
 void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int address,
               inout Tally tally)
 {
@@ -272,8 +275,8 @@ void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int addr
     }
     tally.left = max(tally.left, contact ? depth : 0.0);
 #if MODE != DRAWN
-    // What has been carried along with a particle that was pushed may be just at the surface:
-    // rounding shall not decide whether it flies on into it.
+    // A particle that was moved along with a pushed one may be just at the surface. Rounding must
+    // not decide whether it flies into the surface.
     float rounding = EXACT * (l + max(abs(at.x), max(abs(at.y), abs(at.z))));
     v = contact || depth > -rounding
             ? velocity_after(v, surface / collide_params.dt, nearest.normal)

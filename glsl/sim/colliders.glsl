@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The surfaces that hair must not cross, as they are at the step's end: distances (negative
-// inside), normals, motion.
+// The surfaces that hair must not cross, at the step's end: distances (negative inside), normals
+// and motion.
 //
-// A rounded cone is all spheres with centres a + s e, 0 <= s <= L, and radii r + g s. The distance
-// from p to it is the least of |p - a - s e| - r - g s; with y along and h across the axis, the
-// derivative vanishes where s = y + g h/sqrt(1 - g^2), and the function is convex, so s is clamped
-// to the axis. L = 0 is a sphere.
+// A rounded cone is the union of all spheres with centres a + s e, 0 <= s <= L, and radii r + g s.
+// The distance from p to it is the minimum of |p - a - s e| - r - g s over s. With y the coordinate
+// of p along the axis and h across it, the derivative is zero at s = y + g h/sqrt(1 - g^2). The
+// function is convex, so s is clamped to the axis. L = 0 is a sphere.
 
 layout(binding = BIND_COLLIDERS) uniform samplerBuffer colliders; // see scene/colliders.c
 
@@ -22,8 +22,8 @@ Cone fetch_cone(int i)
                 texelFetch(colliders, at + 2).xy);
 }
 
-// Few cones (CONES > 0) are fetched once and stay in registers; loops over them unroll. A fetch
-// costs a CPU driver as much as a distance.
+// A few cones (CONES > 0) are fetched once and stay in registers, and loops over them are unrolled.
+// A fetch costs a CPU driver as much as computing a distance.
 #if CONES > 0
 Cone few_cones[CONES];
 
@@ -64,7 +64,7 @@ float ground_distance(int i, vec3 p, out vec3 normal) { return plane_distance(i,
 struct Nearest {
     float distance;
     vec3 normal;
-    float moved; // 1: with the head, 2: also as field_moved says
+    float moved; // 1: moves with the head, 2: and by field_moved
 };
 
 void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved)
@@ -75,8 +75,9 @@ void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved
     nearest.distance = min(distance, nearest.distance);
 }
 
-// A loop over the shapes of each OTHER row of the table (collider_table.h): `body` has i, distance,
-// normal and moved. HAS_KIND 0 (the scene has none) leaves no code.
+// A loop over the shapes of each OTHER row of the table (collider_table.h). `body` may use i,
+// distance, normal and moved. HAS_KIND is 0 if the scene has no such shape; then no code is
+// generated.
 #define LOOP_OTHER(kind, name, body)                                                               \
     range = ivec3(collide_params.shapes[group++].xyz);                                             \
     for (int i = range.x; HAS_##kind != 0 && i < range.z; ++i) {                                   \
@@ -84,7 +85,7 @@ void take_nearer(inout Nearest nearest, float distance, vec3 normal, float moved
         body                                                                                       \
     }
 
-// The surface that is nearest to p, or that p is deepest inside.
+// The surface with the smallest signed distance from p.
 Nearest nearest_surface(vec3 p)
 {
     Nearest nearest = Nearest(1e30, vec3(0.0), 0.0);
@@ -107,7 +108,8 @@ Nearest nearest_surface(vec3 p)
     return nearest;
 }
 
-// How far what the head carries at p has come in this step. Small turns do not cancel.
+// The displacement in this step of a point that moves with the head and is now at p. Written so
+// that small rotations do not cancel.
 vec3 head_displacement(vec3 p)
 {
     vec4 q = collide_params.head_turn_back;

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: MIT
-// The end of a step whose middle is midpoint.glsl's, and whose positions x are as far as tractrices
-// would let them from p.
+// The end of a step, after midpoint.glsl has found the middle. Tractrices have moved the positions
+// to x, which may differ from the targets p.
 //
-// Velocities: another half kick, u = K(u), projected orthogonally on those that the new shape, with
-// unit directions d, allows: the impulses lambda solve J J^T lambda = J u,
+// Velocities: after another half kick, u = K(u) is projected orthogonally onto the velocities that
+// the new shape, with unit directions d, permits. The impulses lambda solve J J^T lambda = J u,
 //
 //     -d_j.d_{j-1} lambda_{j-1} + 2 lambda_j - d_j.d_{j+1} lambda_{j+1} = d_j.(u_j - u_{j-1})
 //     v_j = u_j - lambda_j d_j + lambda_{j+1} d_{j+1}    (1 lambda_1 in the first row),
 //
-// which takes sum lambda_j (J u)_j / 2 = sum pivot value^2 / 2 of kinetic energy and never adds
-// any. (An oblique projection, as velocity = displacement / dt is after pulls along the strand, has
-// a norm of 2.6 for 16 and 3.8 for 32 particles.)
+// This removes the kinetic energy sum lambda_j (J u)_j / 2 = sum pivot value^2 / 2 and never adds
+// any. (An oblique projection, such as velocity = displacement / dt after pulls along the strand,
+// has a norm of 2.6 for 16 and 3.8 for 32 particles.)
 //
-// Energy: the tensions of the middle are off by second order, and so is x from p, which is work of
-// gravity and springs. Together they could feed a motion for ever where steps are long. So where
-// the sum is a gain, velocities are scaled until they have paid for it:
+// Energy: the tensions of the middle have second-order errors. So has x - p, along which gravity
+// and springs do work. At long steps these errors could feed a motion without end. So if their sum
+// is a gain, the velocities are scaled to pay for it:
 //
 //     |v|^2/2 <= |u|^2/2 - gained + sum (a + k (style - (x + p)/2)).(x - p)
 //
-// All in the frame that moves with the root. Needs midpoint.glsl, tridiagonal.glsl.
+// Everything is in the frame that moves with the root. Needs midpoint.glsl, tridiagonal.glsl.
 
 struct Constraint {
     Row row;
     vec3 d_before, u_before, style;
-    float kinetic; // twice, of the u so far
-    float lost;    // twice what the projection takes
-    float worked;  // by the forces from p to x
+    float kinetic; // twice the kinetic energy of the u so far
+    float lost;    // twice the energy that the projection removes
+    float worked;  // work of the forces from p to x
 };
 
 Constraint constrain_open(Strand strand)
@@ -35,7 +35,7 @@ Constraint constrain_open(Strand strand)
     return Constraint(NO_ROW, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0);
 }
 
-// Root to tip: segment j points along d and ends at x, relative to the root.
+// From root to tip: adds segment j, which points along d and ends at x, relative to the root.
 void constrain_add(inout Constraint p, Strand strand, int j, vec3 d, vec3 x)
 {
     int a = strand.address + j * STRAND_TILE;
@@ -62,14 +62,14 @@ void constrain_add(inout Constraint p, Strand strand, int j, vec3 d, vec3 x)
     p.d_before = d, p.u_before = u;
 }
 
-// The scale of velocities that pays for the energy which the step has gained.
+// The factor of the velocities that pays for the energy gained in the step.
 float pay(Constraint p, float gained)
 {
     float has = p.kinetic - p.lost, may = p.kinetic + 2.0 * (p.worked - gained);
     return has > may ? sqrt(max(may, 0.0) / max(has, LEAST_PIVOT)) : 1.0; // never 0/0
 }
 
-// Tip to root: the impulses, and the velocities that they leave.
+// From tip to root: computes the impulses and the final velocities.
 void constrain_finish(Constraint p, Strand strand, float gained)
 {
     float lambda = 0.0, factor_beyond = 0.0, scale = pay(p, gained);

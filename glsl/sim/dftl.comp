@@ -24,11 +24,11 @@
 
 #undef BENDS
 #define BENDS 0
-const float ALLOWED = 0.003; // share of energy
+const float ALLOWED = 0.003; // share of the energy
 #define SLOWS_AGAIN 1
 #include "sim/energy_account.glsl"
 
-const float PAID_ABOVE = 0.001; // share of energy
+const float PAID_ABOVE = 0.001; // share of the energy
 
 void main()
 {
@@ -51,7 +51,7 @@ void main()
 #if GUARDED
         u.xyz = mix(u.xyz, account.moved_before / strand.dt, paid);
 #endif
-        // u would lead to x + move, v does to x + move + back
+        // u leads to x + move, v to x + move + back
         vec3 kicked = kicked_velocity(strand, j, u.xyz), move = strand.dt * kicked,
              back = strand.dt * (kicked_velocity(strand, j, u.xyz - u.w * (ahead - x)) - kicked);
 #if STYLED
@@ -63,7 +63,7 @@ void main()
         vec3 predicted = x + move + back;
         vec3 reach = predicted - leader;
         float square = dot(reach, reach);
-        // on its leader: the last direction (first the style's) goes on
+        // if it is on its leader, the last direction (at first the style's) continues
         along = square > 1e-24 ? reach * inversesqrt(square) : along;
         vec3 follower = leader + segment.w * along;
         velocities[a - STRAND_TILE] =

@@ -29,15 +29,14 @@
 #include "sim/constrain.glsl"
 #endif
 
-const uint MOST_LINKS = 40000u; // as in solver_emulation.c
+const uint MOST_LINKS = 40000u; // also in solver_emulation.c
 
 vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before)
 {
     return vec4(direction(q - q_before), fetch_rest(strand, j).w);
 }
 
-// Where particles want to go, and the links at the step's start. The root stands at 0; thesis: the
-// new root.
+// Computes the targets, and the links at the step's start. The root is at 0 (thesis: the new root).
 #if THESIS
 void predict(Strand strand)
 {
@@ -76,8 +75,8 @@ vec3 aim_of(Strand strand, int j)
     return j == 0 ? vec3(0.0) : recall_aim(strand.address + j * STRAND_TILE, j);
 }
 
-// Pulls particle i to where it wants to go, and lets the others follow as seen from where they want
-// to go. Gives where particle `next` is then, as pull does.
+// Pulls particle i to its target; the others follow in the frames of their own targets. Returns the
+// position of particle `next` afterwards, like pull.
 vec3 pull_along(Strand strand, int i, int next)
 {
     int last = int(step_params.vertex_count - 1u);
@@ -103,7 +102,7 @@ vec3 pull_along(Strand strand, int i, int next)
 }
 #endif
 
-// Pulls particle i, now at x, to where it wants to go. Gives where particle `next` is then.
+// Pulls particle i, now at x, to its target. Returns the position of particle `next` afterwards.
 vec3 pull(Strand strand, int i, int next, vec3 x)
 {
     int last = int(step_params.vertex_count - 1u);
@@ -125,7 +124,7 @@ vec3 pull(Strand strand, int i, int next, vec3 x)
     return at;
 }
 
-// The particle whose turn is next, before place `end` of the order; 0: none.
+// The next particle in the order, before place `end`; 0 if there is none.
 int next_mover(inout Shuffle order, uint end)
 {
 #if THESIS
@@ -135,14 +134,14 @@ int next_mover(inout Shuffle order, uint end)
 #endif
 }
 
-// The moves of this phase; whether they were the last. Place 0 has where the root is by then, and
-// what the step's middle has gained.
+// Does the moves of this phase and returns whether they were the last. Entry 0 stores the root's
+// position so far and the energy gained in the step's middle.
 bool pull_all(Strand strand)
 {
     uint count = step_params.vertex_count - 1u, phase = step_params.phase;
     uint most = IN_REGISTERS == 1 ? 2u * count : MOST_LINKS / count, start = phase * most;
     Shuffle order = shuffle_open(emulation_params.order_seed, count, start);
-    if (start >= order.size) return false; // longer strands need more phases
+    if (start >= order.size) return false; // this strand needs fewer phases than the longest
     uint end = min(start + most, order.size);
     Shuffle counted = order;
     int moves = 0;
@@ -170,7 +169,7 @@ bool pull_all(Strand strand)
     return end == order.size;
 }
 
-// The root is pulled home.
+// Pulls the root back to the head.
 vec3 home(inout vec3 move, int j)
 {
     vec4 link = recall(j);

@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: MIT
-// An account of the energy that constraints give to a strand, which is none if they are kept
-// exactly, and a guard against more than a little of it (needs particles.glsl, strand.glsl). Seen
-// from the root, whose acceleration then acts like a force on all particles, particle j of mass 1
-// goes by m_j in a step, after u_j dt in the one before; without constraints it would go by f_j.
-// Then
+// An account of the energy that constraints add to a strand, and a guard against adding more than a
+// little. (Exact constraints would add none. Needs particles.glsl, strand.glsl.) In the frame of
+// the root, the root's acceleration acts like a force on all particles. Particle j, of mass 1,
+// moves by m_j in a step and moved by u_j dt in the step before; without constraints it would move
+// by f_j. Then
 //
 //     K' - K = sum (m - u dt).(m + u dt)/2/dt^2 = work of the forces + X,
 //     X = sum (m - f).(m + u dt)/2/dt^2
 //
-// (leapfrog's energy: velocities between steps, work over the mean of two steps). The strand
-// carries a = max(a + X, 0), what it has gained since it last had least, in the fourth component of
-// the root's velocity. Above ALLOWED (the solver says it) of what gravity could give to it, and of
-// what it has, it goes by the share k of its way only, each segment from where it was towards where
-// it went. For moves k m, X = A k^2 + B k + C (springs give what they give along the way: to B), of
-// which the greatest k that keeps within ALLOWED is known at once. Segments that turn far go by
-// more than k; that goes into the account. Should no k do, the velocities of the one that gains
-// least pay for the rest.
+// (leapfrog's energy: velocities between steps, work over the mean of two steps). The fourth
+// component of the root's velocity stores a = max(a + X, 0), the energy gained since the account
+// was last at its lowest. ALLOWED (set by the solver) is the permitted gain, as a share of the
+// energy that gravity could give to the strand and of the energy that it has. If a exceeds that,
+// the strand moves only by the share k of its way: each segment turns from its old direction
+// towards the new one. For moves k m, X = A k^2 + B k + C (the energy of springs is assumed linear
+// along the way, in B), so the greatest k within ALLOWED follows directly. Segments that turn far
+// move by more than k; this difference goes into the account. If no k suffices, take the k with the
+// smallest gain and reduce the velocities to pay for the rest.
 //
-// SLOWS_AGAIN 1: segments that turn right over have no way between, and go all of it or none. Where
-// the strand's moves have more than 1.5 times the energy meant for them, they are made smaller
+// SLOWS_AGAIN 1: segments that flip have no intermediate direction and move by all of their way or
+// none. If the strand's moves then have more than 1.5 times the intended energy, they are reduced
 // again.
 
-const float NOISE = 1e-6; // of a position; rounding is 6e-8
+const float NOISE = 1e-6; // of a position; rounding errors are 6e-8
 
 struct Account {
-    vec3 moved, moved_before;        // of the root, in this step and in the one before
-    float squares, linear, constant; // times dt^2/2
+    vec3 moved, moved_before;        // of the root, in this step and in the previous one
+    float squares, linear, constant; // energies, times 2 dt^2
     float stored_before, stored;     // in springs that count as constraints
-    float gained;                    // in the steps before, and not paid yet
+    float gained;                    // in earlier steps, not paid yet
 };
 
 Account account_open(Strand strand, float stored)
@@ -37,7 +38,7 @@ Account account_open(Strand strand, float stored)
                    stored, before.w);
 }
 
-// A particle that has gone by `move`, would have gone by `free` without constraints, and had the
+// Adds a particle that moved by `move`, would have moved by `free` without constraints, and had the
 // velocity v.
 void account_add(inout Account account, Strand strand, vec3 move, vec3 free, vec3 v)
 {
@@ -48,8 +49,8 @@ void account_add(inout Account account, Strand strand, vec3 move, vec3 free, vec
     account.constant -= dot(forced, before);
 }
 
-// A whole step in sums, for want of each particle's f: uniform forces that move particles by
-// `fall`.
+// Adds a whole step by sums, if f is not known for each particle: uniform forces move all particles
+// by `fall`.
 void account_add_sums(inout Account account, vec3 fall, vec3 sum_now, vec3 sum_before,
                       float squares_now, float squares_before)
 {
@@ -59,7 +60,7 @@ void account_add_sums(inout Account account, vec3 fall, vec3 sum_now, vec3 sum_b
     account.constant -= squares_before + dot(forced, sum_before);
 }
 
-// The greatest k of [0, 1] with a k^2 + b k + c <= 0, or what comes nearest to it; a > 0.
+// The greatest k in [0, 1] with a k^2 + b k + c <= 0, or the k with the smallest value; a > 0.
 float share_within(float a, float b, float c)
 {
     float discriminant = b * b - 4.0 * a * c;
@@ -69,12 +70,13 @@ float share_within(float a, float b, float c)
 }
 
 #if SLOWS_AGAIN
-const int MOST_SLOWED = 6; // times in a step
-const float LESS = 0.4;    // each time; one half decides nothing for a segment that turns over
+const int MOST_SLOWED = 6; // per step
+const float LESS = 0.4;    // factor of each reduction; one half would leave it undecided which way
+                           // a flipping segment goes
 #endif
 
-// Scales the strand's move by `share` and its velocities by `kept` besides. Gives what springs
-// store then.
+// Scales the strand's move by `share` and also its velocities by `kept`. Returns the energy of the
+// springs afterwards.
 float account_slow(inout Account account, Strand strand, int last, float share, float kept)
 {
 #if BENDS
@@ -107,23 +109,23 @@ float account_slow(inout Account account, Strand strand, int last, float share, 
 #endif
 }
 
-// What gravity and wind could give to the strand, about.
+// An estimate of the energy that gravity and wind could give to the strand.
 float account_fall(Strand strand, int last)
 {
     return 0.5 * float(last) * strand.total_length * length(strand.push) / step_params.gain;
 }
 
-// What rounding of positions looks like: hair at rest whose style holds its weight has nothing
-// else, and needs no guard.
+// The energy that rounding errors of positions seem to have. Hair at rest that its style holds has
+// no other energy and needs no guard.
 float account_noise(Strand strand, int last)
 {
     float speed = NOISE * (strand.total_length + length(strand.root)) / strand.dt;
     return 0.5 * float(last) * speed * speed;
 }
 
-// Slows the strand down if need be, which sets `squares` anew. Gives what the strand has gained and
-// not paid. The loop is rolled, so that a CPU driver leaves it after a round where no strand needs
-// it.
+// Slows the strand down if necessary, which updates `squares`. Returns the energy that the strand
+// has gained and not paid. The loop is not unrolled, so a CPU driver leaves it after one round if
+// no strand needs another.
 float account_close(inout Account account, Strand strand, int last)
 {
     float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares,
@@ -152,5 +154,5 @@ float account_close(inout Account account, Strand strand, int last)
         }
 #endif
     }
-    return gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 for a NaN
+    return gained > 0.0 && gained < 1e30 ? gained : 0.0; // 0 if NaN
 }

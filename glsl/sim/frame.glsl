@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The frame in which a strand is at rest, at the step's start (old) and end: x_world = rotation
-// x_rest + translation. It is the head's, or, with BOUND 1, that of the deforming mesh around the
-// strand's root, within the head's: then open_frame comes before everything else of a strand
-// (needs step_params.h, rigid.glsl).
+// x_rest + translation. It is the head's frame. With BOUND 1 it is the frame of the deforming mesh
+// at the strand's root, combined with the head's; then open_frame must be called before anything
+// else for a strand (needs step_params.h, rigid.glsl).
 #if BOUND
 layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
 vec4 frame_rotation, frame_rotation_old;
 vec3 frame_translation, frame_translation_old, frame_gravity;
 
-// Within a step that a solver takes in parts, frames go evenly from one end to the other.
+// If a solver takes a step in parts, frames are interpolated over the step.
 void frame_at(int strand, float share, vec4 head_rotation, vec3 head_translation, out vec4 rotation,
               out vec3 translation)
 {

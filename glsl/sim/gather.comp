@@ -6,7 +6,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(binding = BIND_POSITION) uniform samplerBuffer positions;
-layout(binding = BIND_STRAND_ID) uniform usamplerBuffer begins; // of each strand: vec4s
+layout(binding = BIND_STRAND_ID) uniform usamplerBuffer begins; // per strand, in vec4s
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Gathered { vec4 gathered[]; };
 
 void main()

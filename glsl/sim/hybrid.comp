@@ -19,8 +19,8 @@
 #include "sim/midpoint.glsl"
 #include "sim/constrain.glsl"
 
-// Tip to root. Keeps the segments' directions; gives where the root ends, relative to where it must
-// go.
+// From tip to root: stores the segments' directions. Returns where the root ends, relative to where
+// it must be.
 vec3 pull_tip(Strand strand, inout Middle middle)
 {
     vec3 q = fetch_position(strand, LAST), y = middle_place(middle, strand, LAST, q);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a solver of particles keeps of each particle between two sweeps along the strand: a vec4 and
-// a number beside it, and in some also where it wants to go (aim) and how fast. In registers where
-// the strand is short enough for that (loops over a constant count unroll), else in scratch memory
-// (needs particles.glsl, recipe.scratch = 2).
+// Storage for each particle between two sweeps along the strand: a vec4 and a number, and in some
+// solvers also the target position (aim) and velocity. It is in registers if the strand is short
+// enough (loops over a constant count are unrolled), otherwise in scratch memory (needs
+// particles.glsl, recipe.scratch = 2).
 //
-// Outside of registers, aims lie in the places that the step will write at its end: once a
-// particle's is kept there, position_before and velocity_before no longer give that particle as it
-// was at the step's start.
+// In scratch memory, aims are stored where the step will write its results. Once a particle's aim
+// is stored, position_before and velocity_before no longer return the particle's state at the
+// step's start.
 
 #if IN_REGISTERS
 #define LAST (VERTICES - 1)
@@ -15,7 +15,7 @@ float kept_beside[VERTICES];
 vec3 kept_aim[VERTICES];
 vec4 kept_velocity[VERTICES];
 
-// `address` is particle j's.
+// `address` is the address of particle j.
 void keep_open(int strand) {}
 void keep(int j, vec4 a) { kept[j] = a; }
 void keep_beside(int j, float b) { kept_beside[j] = b; }

@@ -1,36 +1,39 @@
 // SPDX-License-Identifier: MIT
-// Velocities in the middle of a step, of a strand of rigid segments: the implicit midpoint rule,
-// linearised once.
+// The velocities in the middle of a step, for a strand of rigid segments: the implicit midpoint
+// rule, linearised once.
 //
 // In the frame that moves with the root (q, v at the step's start, h = dt/2, p_0 = w_0 = 0):
-//   1. half a kick, v+ = K(v), and half of what the style springs do, vs = keep v+ + draw (style -
-//      q), implicitly
-//   2. tensions, from the segments' directions d in the middle, those of q + h v:  J J^T lambda = J
-//      vs, J J^T = tridiag(-d_j.d_{j-1}, 2; 1)
-//   3. velocities in the middle, w = vs - J^T lambda, where pushing (lambda-) acts along d, and
-//      pulling along the directions that w itself leads to, d = (r + h (w_j - w_{j-1}))/l: with T =
-//      lambda+/l a tridiagonal system again, (I + h Laplacian(T)) w = vs - J^T lambda- -
-//      Laplacian(T) q. No tension is too stiff for it.
-// From there particles want to go to p = q + dt w, and have u = 2w - v+ (constrain.glsl goes on
-// from there): as w.(w - v+) = 0 for rigid segments, |u| = |v+|, and the kicks add what gravity
-// does along dt w. Second order, and energy neither comes nor goes, but for what tractrices change
-// about p (see constrain.glsl).
+//   1. Half a kick, v+ = K(v), and half of the effect of the style springs, implicitly: vs = keep
+// v+ +
+//      draw (style - q).
+//   2. Tensions, from the directions d of the segments q + h v in the middle:  J J^T lambda = J vs,
+//      J J^T = tridiag(-d_j.d_{j-1}, 2; 1).
+//   3. Velocities in the middle, w = vs - J^T lambda. Compression (lambda-) acts along d, tension
+//      (lambda+) along the directions that result from w itself, d = (r + h (w_j - w_{j-1}))/l.
+// With
+//      T = lambda+/l this is another tridiagonal system, (I + h Laplacian(T)) w = vs - J^T lambda-
+// -
+//      Laplacian(T) q. It is stable for any tension.
+// The particles' targets are then p = q + dt w, with velocities u = 2w - v+ (constrain.glsl
+// continues from there). For rigid segments w.(w - v+) = 0, so |u| = |v+|, and the kicks add the
+// work of gravity along dt w. The method is of second order and conserves energy, apart from the
+// changes that tractrices make to p (see constrain.glsl).
 //
-// The springs' end that counts is that of the step, q + dt w, as in the other solvers:
+// The springs are evaluated at the step's end, q + dt w, as in the other solvers:
 //     keep = 1/(1 + 2z),  draw = keep z/h,  z = k h^2 (step_style_spring in step.c).
-// (q + dt w/2 would be second order and damp nothing: strands that their springs push together
-// buckled, and trembled on.)
-// The sweeps run to and fro. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4 a
-// particle), keep_beside, recall_beside.
+// (Evaluation at q + dt w/2 would be of second order but without damping: strands that their
+// springs compress buckled and trembled for ever.)
+// Sweeps run in alternating directions. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4
+// per particle), keep_beside, recall_beside.
 
-// K(v) of particle j relative to the root: forces and drag for half a step.
+// K(v) of particle j relative to the root: half a step of forces and drag.
 vec3 kicked(Strand strand, int j, vec3 v)
 {
     return kicked_velocity(strand, j, v) - strand.root_velocity;
 }
 
-// vs of particle j that is `offset` from its place in the style; of two particles' difference as
-// well where their springs are alike.
+// vs of a particle j that is `offset` from its place in the style. Also works for the difference of
+// two particles with equal springs.
 vec3 sprung(Strand strand, int j, vec3 kick, vec3 offset)
 {
 #if STYLED
@@ -42,7 +45,8 @@ vec3 sprung(Strand strand, int j, vec3 kick, vec3 offset)
 }
 
 #if VARIES
-// What particles j - 1 and j differ by in vs. `style`: j's place, then that of j - 1.
+// The difference of vs between particles j and j - 1. `style` is the place of j and becomes that of
+// j - 1.
 vec3 sprung_apart(Strand strand, int j, vec3 kick, vec3 kick_before, vec3 q, vec3 q_before,
                   inout vec3 style)
 {
@@ -61,7 +65,7 @@ vec3 style_of_tip(Strand strand)
 }
 #endif
 
-// Tip to root: rows of the tensions. Only differences along the strand count.
+// From tip to root: the rows of the tensions. They depend only on differences along the strand.
 void find_directions(Strand strand)
 {
     float h = 0.5 * strand.dt;
@@ -95,8 +99,8 @@ void find_directions(Strand strand)
     }
 }
 
-// Root to tip: tensions; rows of w, each known one segment later. Gives where the style's tip is,
-// relative to the root.
+// From root to tip: the tensions, and the rows of w, each of which is known one segment later.
+// Returns the position of the style's tip relative to the root.
 vec3 find_tensions(Strand strand)
 {
     int last = LAST;
@@ -127,15 +131,16 @@ vec3 find_tensions(Strand strand)
     return style;
 }
 
-// On the way back from the tip: the particle whose turn it is.
+// The current particle on the way back from the tip.
 struct Middle {
     vec3 w;
     vec3 style;   // relative to the root
-    float factor; // of its row
-    float gained; // by what tensions did to the particles beyond, m^2/s^2: 0 if they were exact
+    float factor; // factor of the particle's row
+    float gained; // by the tensions' work on the particles beyond, m^2/s^2; 0 if tensions were
+                  // exact
 };
 
-// Steps 1 to 3; the tip's turn.
+// Does steps 1 to 3 and starts at the tip.
 Middle middle_open(Strand strand)
 {
     find_directions(strand);
@@ -144,8 +149,8 @@ Middle middle_open(Strand strand)
     return Middle(k.xyz, style, k.w, 0.0);
 }
 
-// Particle j, at q: writes p where its position will be, u where its velocity will be. Then j - 1
-// has its turn. Gives p.
+// Finishes particle j, which was at q: stores p in its position and u in its velocity. Then steps
+// to j - 1. Returns p.
 vec3 middle_place(inout Middle m, Strand strand, int j, vec3 q)
 {
     int a = strand.address + j * STRAND_TILE;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a solver of particles (recipe.h) is given: positions and velocities of the step
-// before, both to be written to the same places, the style, and where the head carries
-// the root.
+// The inputs of a solver of particles (recipe.h): the positions and velocities of the step before,
+// which the solver overwrites, the style, and the root's position on the head.
 //
-// Macros: GROUP_SIZE lanes a group; STRANDS strands a lane, GROUP_SIZE apart; IN_REGISTERS and
-// VERTICES: the strand has VERTICES vertices and may be held in arrays, whose loops unroll; else
-// any length, step_params.vertex_count. LEAD: vertices before the solver's root, which the head
-// carries (0 or 1).
+// Macros: GROUP_SIZE: lanes per group. STRANDS: strands per lane, GROUP_SIZE apart. IN_REGISTERS
+// and VERTICES: the strand has VERTICES vertices and may be stored in arrays, whose loops are
+// unrolled; otherwise strands have any length, step_params.vertex_count. LEAD: vertices before the
+// solver's root, which the head carries (0 or 1).
 #include "sim/step_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -21,9 +20,9 @@ layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[];
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 
 // A particle at the step's start: xyz, m and m/s. A lane fetches only particles of its own strand,
-// each before it stores to that particle. That is enough where loads and stores of one memory keep
-// their order: ORDERED 1, by the buffers themselves. CPU drivers get
-// texels of the same memory; a GPU's compiler may move those beyond a store.
+// and each of them before it stores to that particle. If loads and stores to the same memory keep
+// their order, that is enough: ORDERED 1 reads the buffers themselves. CPU drivers read the same
+// memory through textures; a GPU's compiler could move such reads behind a store.
 #if ORDERED
 #define position_before(address) positions[address]
 #define velocity_before(address) velocities[address]
@@ -34,11 +33,11 @@ layout(binding = BIND_STATE) uniform samplerBuffer velocity_texels;
 #define velocity_before(address) texelFetch(velocity_texels, address)
 #endif
 
-// The first of the lane's strands. Lanes beyond the last strand have nothing to do.
+// The lane's first strand. Lanes beyond the last strand do nothing.
 int first_strand() { return group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }
 
-// With LEAD 1 the head carries vertex 1 too, and that is the solver's root: it sees vertices 0 ..
-// vertex_count - 1 from strand_base on.
+// With LEAD 1 the head also carries vertex 1, which is the solver's root: the solver sees vertices
+// 0 .. vertex_count - 1 from strand_base on.
 int strand_base(int strand)
 {
 #if IN_REGISTERS
@@ -48,24 +47,23 @@ int strand_base(int strand)
 #endif
 }
 
-// Where the head has carried the root (a texel of `rest` with j = 0) at the step's end.
+// The position of the root at the step's end; `root` is the texel of `rest` with j = 0.
 vec3 root_position(vec4 root) { return rotate(frame_rotation, root.xyz) + frame_translation; }
 
-// By how much the head carries the root in the step.
+// The displacement of the root in the step.
 vec3 root_move(vec4 root)
 {
     vec3 old = rotate(frame_rotation_old, root.xyz) + frame_translation_old;
     return root_position(root) - old;
 }
 
-// A particle of the style after another, from the root on: where the head carries it, relative to
-// the root.
+// The next particle of the style, as carried by the head, relative to the root.
 vec3 next_style(vec3 before, vec4 rest, vec4 rotation)
 {
     return before + rest.w * rotate(rotation, rest.xyz);
 }
 
-// Writes what is before the solver's root.
+// Writes the vertices before the solver's root.
 void carry_lead(int base)
 {
 #if LEAD

@@ -26,8 +26,8 @@ layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
 layout(binding = BIND_STATE) uniform samplerBuffer segments; // unit direction, rest length
 layout(std430, binding = BIND_POSITION_OUT) writeonly buffer Positions { vec4 positions[]; };
 
-// The polynomials of a turn. Uniforms cost a load wherever they are named, so they are read once,
-// into this.
+// The polynomials of a turn. A uniform costs a load at each use, so they are read once into this
+// struct.
 struct Turn {
     vec4 cos_low, cos_high, sin_low, sin_high;
 };
@@ -39,12 +39,12 @@ float polynomial(vec4 low, vec4 high, float x)
     return a + xx * b + xx * xx * (c + xx * d);
 }
 
-// Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of their angle. With
-// the bisector h this is a turn towards h by v = 2w of the half angle p <= 90 deg: cos(v p) a +
-// sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of x = sin^2(p/2) <= 1/2, given
-// as polynomials, so that no angle is needed. Antiparallel vectors have no bisector: a stays. Where
-// the sum is short, what rounding leaves of it is not quite across, and the result not quite of
-// length 1.
+// Slerp from the unit vector a towards the unit vector b by a share w <= 1/2 of the angle between
+// them. With the bisector h this turns a towards h by v = 2w of the half angle p <= 90 deg: cos(v
+// p) a + sin(v p)/sin(p) (h - cos(p) a). Both factors are smooth functions of x = sin^2(p/2) <= 1/2
+// and evaluated as polynomials, so no angle is needed. Antiparallel vectors have no bisector; then
+// a stays. If the sum a + b is short, rounding makes h not quite perpendicular to a - b, and the
+// result is not quite a unit vector.
 vec3 turn(vec3 a, vec3 b, Turn by)
 {
     vec3 sum = a + b;
@@ -61,7 +61,7 @@ vec3 turn(vec3 a, vec3 b, Turn by)
 #if MIX == 4
 layout(binding = BIND_ALONG) uniform samplerBuffer along_strand; // solver_split.c
 
-// From the unit vector a towards the unit vector b by a share w of their angle.
+// From the unit vector a towards the unit vector b by a share w of the angle between them.
 vec3 slerp(vec3 a, vec3 b, float w)
 {
     float cosine = clamp(dot(a, b), -1.0, 1.0), angle = acos(cosine),
@@ -85,11 +85,11 @@ vec2 share_of_turn(float cosine, Turn by, float v)
 #endif
 }
 
-// x turned about h x b by a share v of the angle from the unit vector h to the unit vector b. With
+// Rotates x about h x b by a share v of the angle from the unit vector h to the unit vector b. With
 // half that angle, p, the rotation is the quaternion (sin(v p) axis, cos(v p)), axis = h x b / (2
-// sin(p) cos(p)). As b passes -h, where the axis flips, v fades to the nearer of 0 and 1, from 150
-// degrees on, where 4 cos^2(p) is 0.27: the quaternion goes to (0, 1) or (sin(p) axis, cos(p)). It
-// need not stay a unit: its square divides the rotation's terms.
+// sin(p) cos(p)). When b passes -h, the axis flips. So from 150 degrees on, where 4 cos^2(p) is
+// 0.27, v fades to the nearer of 0 and 1: the quaternion becomes (0, 1) or (sin(p) axis, cos(p)).
+// The quaternion need not be a unit: the rotation is divided by its square.
 vec3 turn_along(vec3 x, vec3 h, vec3 b, Turn by, float v)
 {
     float square = clamp(0.5 + 0.5 * dot(h, b), 0.0, 1.0), cosine = sqrt(square),
@@ -118,7 +118,7 @@ void main()
     hanging = rotate(rotation, hanging);
 #endif
     vec3 x = rotate(rotation, root.xyz) + translation;
-    // A matrix turns a vector by half as many operations as a quaternion.
+    // A matrix rotates a vector with half as many operations as a quaternion.
     mat3 head = mat3(rotate(rotation, vec3(1.0, 0.0, 0.0)), rotate(rotation, vec3(0.0, 1.0, 0.0)),
                      rotate(rotation, vec3(0.0, 0.0, 1.0)));
     positions[first] = vec4(x, 1.0);
@@ -135,7 +135,8 @@ void main()
 #if MIX == 4
         float share = 1.0 - texelFetch(along_strand, 2 * (j - int(pose_params.lead))).x;
 #else
-        const float share = MIX == 2 ? 1.0 : 0.0; // the nearer one: `by` has it
+        // The side that is nearer; `by` holds the other share.
+        const float share = MIX == 2 ? 1.0 : 0.0;
 #endif
 #if HANGS
         vec3 turned = turn_along(d, hanging, physical, by, share);

@@ -41,15 +41,16 @@ vec3 mended(vec3 r, float l, float weights)
 #endif
 }
 
-// Where the root is after `step` of the small steps.
+// The root's position after `step` small steps.
 vec3 root_at(vec3 root_move, int step, int small_steps)
 {
     return root_move * (float(step) / float(small_steps));
 }
 
-// Particle j's flight in later small steps is by carried_share(j) m + fall_of(j), Verlet's form
-// with drag; the first starts from a velocity. What differs along the strand (VARIES): the first
-// small step's decay and gain, both pulls towards the style.
+// In all small steps but the first, particle j moves by carried_share(j) m + fall_of(j) (Verlet
+// with drag); the first starts from a velocity. If parameters differ along the strand (VARIES),
+// these functions also give the decay and gain of the first small step, and both pulls towards the
+// style.
 float carried_share(int j)
 {
 #if VARIES
@@ -103,7 +104,7 @@ void main()
     vec3 drawn = position_before(base).xyz, at = vec3(0.0), carry = root_move(root);
     x[0] = root_at(carry, 1, small_steps);
 #if STYLED
-    vec3 style[VERTICES]; // from the root
+    vec3 style[VERTICES]; // relative to the root
     style[0] = vec3(0.0);
 #endif
     for (int j = 1; j < VERTICES; ++j) {
@@ -136,8 +137,8 @@ void main()
     }
     for (int j = 1; j < VERTICES; ++j) m[j] = x[j] - q[j];
 #else
-    // The first small step's flight is known; a particle flies just before its first link is
-    // mended.
+    // The displacement in the first small step is known. A particle flies just before its first
+    // link is corrected.
     for (int step = 0; step < small_steps; ++step) {
         vec3 from = root_at(carry, step + 1, small_steps), gone = vec3(0.0), push = vec3(0.0);
         x[0] = from;
@@ -163,8 +164,9 @@ void main()
         finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], m[j], drawn, along);
 }
 #else
-// Any length: a dispatch (phase) is one sweep along the strand in scratch memory. A particle flies
-// just before its first link is mended in a small step; behind the last sweep of all it is drawn.
+// Strands of any length: each dispatch (phase) is one sweep along the strand in scratch memory. A
+// particle flies just before its first link is corrected in a small step; after the very last sweep
+// it is drawn.
 layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: x; m
 
 void main()
@@ -188,7 +190,7 @@ void main()
         carry_lead(a);
         positions[a] = vec4(drawn, 1.0);
     }
-    // Link j is mended while j - 1 waits in `x`, `m`; then j - 1 is done with.
+    // Link j is corrected while j - 1 is in `x`, `m`; then j - 1 is finished.
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         int b = a + STRAND_TILE;
         vec3 next, next_m;

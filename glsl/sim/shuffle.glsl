@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// A random order of 0 .. count - 1 without memory: a bijection on the numbers of as many bits
-// (three rounds of multiplying by an odd number, adding, and folding the upper half of the bits
-// into the lower), in which those beyond count are passed over.
+// A random order of 0 .. count - 1 that needs no memory. It is a bijection on numbers with the
+// required number of bits: three rounds of multiplying by an odd number, adding, and folding the
+// upper half of the bits into the lower half. Numbers from count on are skipped.
 #include "common/hash.h"
 
 const int SHUFFLE_ROUNDS = 3;
 
 struct Shuffle {
-    uint at, count, size; // place in the order; numbers wanted; places, up to 2 count
+    uint at, count, size; // place in the order; numbers in the order; places, less than 2 count
     int fold;
     uint factor[SHUFFLE_ROUNDS], shift[SHUFFLE_ROUNDS];
 };
 
-// From place `at` on.
+// Starts at place `at`.
 Shuffle shuffle_open(uint seed, uint count, uint at)
 {
     Shuffle s;
@@ -25,7 +25,7 @@ Shuffle shuffle_open(uint seed, uint count, uint at)
     return s;
 }
 
-// The next number before place `end`; -1: none is left.
+// The next number before place `end`; -1 if there is none.
 int shuffle_next(inout Shuffle s, uint end)
 {
     while (s.at < end) {

@@ -30,7 +30,7 @@ void main()
     bool was_ready = (calm[s] & SLEEP_READY) != 0u;
     bool keeps_anchor = sleep_params.anchor == SLEEP_ANCHOR_LEFT ||
                         (sleep_params.anchor == SLEEP_ANCHOR_UNREADY && was_ready);
-    // Written so that a position that is no number is never calm.
+    // Written so that a NaN position is never calm.
     bool stays = farthest <= leave && keeps_anchor, is_calm = stays && growth <= grow;
     float reach = 0.0;
     for (int j = 0; j < n; ++j) {

@@ -27,20 +27,20 @@ layout(binding = BIND_REST) uniform samplerBuffer rest;
 #include "sim/split_links.glsl"
 layout(std430, binding = BIND_TIPS) buffer Tips { vec4 tips[]; }; // see open_strand
 
-// A tip flung further than this in one step, in strand lengths, would fold segments in float32: its
-// velocity is cut.
+// A tip that moves farther than this in one step, in strand lengths, would fold segments in
+// float32, so its velocity is limited.
 const float MOVE_LIMIT = 100.0;
 
 struct Strand {
-    int number, address;     // address: of its root
+    int number, address;     // address of the root
     float total_length;      // R, m
     vec3 root_old, root;     // at the step's start and end
-    vec3 push;               // what forces add to a velocity in this step, m/s
+    vec3 push;               // velocity that forces add in this step, m/s
     vec3 position, velocity; // of the tip
-    float limited;           // how often its velocity was cut
+    float limited;           // number of times its velocity was limited
 };
 
-// Its root as the head moves it, and its tip, kicked.
+// The root as the head moves it, and the tip after its kick.
 Strand open_strand(int number)
 {
     Strand strand;
@@ -71,10 +71,10 @@ Strand open_strand(int number)
     return strand;
 }
 
-// The tip is on an inextensible string of length R from the root. A tip that flies to `target`, s
-// from the root, out of the ball that the string allows, lands on the sphere: displaced along the
-// old string (the direction of the constraint's force, which makes it second order) if that was
-// taut and the step is not too long for it, else radially.
+// The tip is on an inextensible string of length R. If its flight to `target`, which is s from the
+// root, ends outside the ball of radius R, it lands on the sphere. If the string was taut and the
+// step is not too long, the tip is displaced along the old string (the direction of the
+// constraint's force, which makes this second order), otherwise radially.
 vec3 land(inout Strand strand, vec3 target, vec3 s)
 {
     vec3 r = strand.position - strand.root_old;
@@ -93,12 +93,12 @@ vec3 land(inout Strand strand, vec3 target, vec3 s)
 #if DRAGGED
 #include "sim/split_published.glsl"
 #else
-// Where the tip flies to. Landed as above, what goes on from step to step is R sin(delta), delta
-// the angle that the string turns in a step, where the arc R delta should: energy at the bottom of
-// a swing would be too large by its share delta^2/4 (0.028 m g L at 30 Hz). Forces across the
-// string that push by k in a step shall turn it by k/R, so that their push along the motion acts by
-// cos(delta) and across it by sin(delta)/delta, to fourth order k - k delta^2/6 - (k.m) m/3 with m
-// = delta along the motion, in the step's middle.
+// Where the tip flies to. Landing as above turns the string by an angle delta per step and
+// preserves R sin(delta) from step to step, where it should preserve the arc R delta: the energy at
+// the bottom of a swing would be too large by the share delta^2/4 (0.028 m g L at 30 Hz). Forces
+// across the string that push by k in a step should turn it by k/R. So their push is multiplied by
+// cos(delta) along the motion and by sin(delta)/delta across it; to fourth order this is k - k
+// delta^2/6 - (k.m) m/3, where m = delta along the motion, in the step's middle.
 vec3 fly(inout Strand strand)
 {
     vec3 target = strand.position + strand.velocity * step_params.dt, s = target - strand.root;
@@ -113,15 +113,15 @@ vec3 fly(inout Strand strand)
     return land(strand, target, s);
 }
 
-// How far the strand is pulled by its root besides being carried along.
+// The pull by the root besides carrying the strand along.
 vec3 drag_of(Strand strand) { return vec3(0.0); }
 
-// The tip at the step's end, where the pulls have left the strand's end at `end`.
+// Sets the tip at the step's end; the pulls have moved the strand's end to `end`.
 void settle(inout Strand strand, vec3 end) { strand.position += strand.velocity * step_params.dt; }
 #endif
 
-// A lane takes STRANDS strands, GROUP_SIZE apart: their chains of dependent arithmetic overlap in
-// the pipeline of a CPU. Those past the end, if any, are the copies that fill the last tile.
+// A lane takes STRANDS strands, GROUP_SIZE apart, so that their dependent chains of arithmetic
+// overlap in a CPU's pipeline. Strands beyond the end are the copies that fill the last tile.
 void main()
 {
     int first = group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
@@ -139,8 +139,8 @@ void main()
         move[k] = target[k] - (strand[k].root - drag[k] + span);
     }
 
-    // In turn the end and the root are pulled; the other end goes along by what is left in `move`,
-    // and the next pull begins there and takes it back: the root home, the end to the target.
+    // Pulls the end and the root in turn. The other end moves by the remaining `move`; the next
+    // pull starts there and takes it back: the root to the head, the end to its target.
     for (int pull = 0; pull < split_params.pulls; ++pull) {
         pull_links(address, move, (pull & 1) == 0);
         for (int k = 0; k < STRANDS; ++k) move[k] = drag[k] - move[k], drag[k] = vec3(0.0);

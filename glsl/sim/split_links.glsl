@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The links of a lane's strands, and pulls along them (needs tractrix.glsl, hair_address.glsl).
-// IN_REGISTERS 1: the strand has VERTICES vertices, and stays in registers for the whole step,
-// whose loops unroll. 0: any length, in memory.
-// the buffer at the step's start
+// IN_REGISTERS 1: the strand has VERTICES vertices and stays in registers for the whole step; loops
+// are unrolled. 0: any length, in memory.
+// segments_before reads the buffer as it is at the step's start.
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
 #if ORDERED // see particles.glsl
 #define segments_before(address) segments[address]
@@ -11,16 +11,17 @@ layout(binding = BIND_STATE) uniform samplerBuffer segment_texels;
 #define segments_before(address) texelFetch(segment_texels, address)
 #endif
 
-const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
+const float SAFE_MOVE = 1e15; // m; keeps squares finite whatever the head does
 
 #if IN_REGISTERS
 const int LINKS = VERTICES - 1;
-vec4 links[STRANDS][LINKS]; // the one that is pulled first is 0: direction head -> tail, length
+vec4 links[STRANDS][LINKS]; // link 0 is the first to be pulled: direction head -> tail, length
 #else
 #define LINKS int(step_params.vertex_count - 1u)
 #endif
 
-// Fetches those of strand k, whose root is at `address`. Gives the way from the root to its end.
+// Fetches the links of strand k, whose root is at `address`. Returns the vector from the root to
+// its end.
 vec3 open_links(int k, int address)
 {
     vec3 span = vec3(0.0);
@@ -34,9 +35,9 @@ vec3 open_links(int k, int address)
     return span;
 }
 
-// Pulls one end of each strand by `move`, which becomes the other end's displacement. The next pull
-// begins there: it is the same loop over the strand turned round, order reversed, directions
-// negated.
+// Pulls one end of each strand by `move`, which becomes the displacement of the other end. The next
+// pull starts from that end; reversing the order and negating the directions lets both use the same
+// loop.
 void pull_links(int address[STRANDS], inout vec3 move[STRANDS], bool from_tip)
 {
     for (int k = 0; k < STRANDS; ++k) move[k] = clamp(move[k], -SAFE_MOVE, SAFE_MOVE);
@@ -59,7 +60,7 @@ void pull_links(int address[STRANDS], inout vec3 move[STRANDS], bool from_tip)
 #endif
 }
 
-// Stores those of strand k with directions of length 1, after an even number of pulls.
+// Stores the links of strand k with unit directions, after an even number of pulls.
 void close_links(int k, int address)
 {
     for (int i = 0; i < LINKS; ++i) {

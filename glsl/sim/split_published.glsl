@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The published rules of `split`, kept to compare with (see split.comp): the root pulls the strand
-// through the world, as through honey.
-//   THESIS 0 (dragged): the tip flies as a mass on a string, pushed along the chord, not the arc.
-//   THESIS 1 (thesis): the tip flies straight, and its velocity is what one round of pulls leaves.
+// The published rules of `split`, kept for comparison (see split.comp). The root pulls the strand
+// through the world without inertia, as through honey.
+//   THESIS 0 (dragged): the tip flies like a mass on a string, pushed along the chord instead of
+// the arc.
+//   THESIS 1 (thesis): the tip flies straight; its velocity is that of its displacement by one
+// round of pulls.
 
 vec3 fly(inout Strand strand)
 {

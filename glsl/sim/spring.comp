@@ -45,8 +45,8 @@
 #include "sim/spring_params.h"
 #include "sim/stretch.glsl"
 
-const float SHORT = 0.25;   // of an average link; solver_spring.c knows it
-const float STIFFEST = 1e9; // h^2 f k/2: beyond what float32 tells from rigid
+const float SHORT = 0.25;   // in average links; solver_spring.c uses it, too
+const float STIFFEST = 1e9; // h^2 f k/2 above which float32 cannot tell a spring from a rigid link
 
 struct Springs {
     float k, b; // of a link, 1/s^2 and m/s^2
@@ -58,7 +58,7 @@ Springs springs_of(int links)
                    spring_params.angular * float(links));
 }
 
-// The angular spring of link j over the mean.
+// The angular spring of link j, divided by the mean.
 float angular_at(int j)
 {
 #if VARIES
@@ -68,7 +68,7 @@ float angular_at(int j)
 #endif
 }
 
-// The angular spring's force on a link of direction u; none where u is opposite to the style's
+// The angular spring's force on a link of direction u. It is 0 if u is opposite to the style's
 // direction t.
 vec3 angular_force(vec3 u, vec3 t, float b)
 {
@@ -79,7 +79,7 @@ vec3 angular_force(vec3 u, vec3 t, float b)
     return b * ratio * across;
 }
 
-// A link without length points along the style.
+// The direction of the link r; that of the style if r has no length.
 vec3 direction_of(vec3 r, vec3 t, out float m)
 {
     float rr = dot(r, r), inverse = inversesqrt(max(rr, 1e-36));
@@ -88,7 +88,7 @@ vec3 direction_of(vec3 r, vec3 t, out float m)
 }
 
 #if IMPLICIT
-// a particle: the rows of C, each with a component of S^{-1} (z + d)
+// Per particle: the rows of C, each with a component of S^{-1} (z + d).
 layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; };
 
 mat3 inverse_of_symmetric(mat3 m)
@@ -97,7 +97,7 @@ mat3 inverse_of_symmetric(mat3 m)
     return mat3(x, y, z) * (1.0 / dot(m[0], x));
 }
 
-// From the tip to the root: stores C and S^{-1} (z + d) of each link.
+// From tip to root: stores C and S^{-1} (z + d) of each link.
 void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
 {
     vec4 rotation = frame_rotation;
@@ -139,7 +139,7 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
     }
 }
 
-// From the root to the tip: displacements, new links and velocities.
+// From root to tip: displacements, new links and velocities.
 void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
 {
     float dt = step_params.dt, per_second = 1.0 / step_params.dt;
@@ -166,7 +166,7 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
     }
 }
 
-// Two dispatches, so that the longest strands stay below CPU drivers' limit of loop iterations.
+// Two dispatches keep the longest strands below the limit of loop iterations of CPU drivers.
 void main()
 {
     int strand = first_strand(), n = int(step_params.vertex_count);
@@ -182,7 +182,7 @@ void main()
         substitute(base, n, wind, root_velocity, root_position(root));
 }
 #else
-// F above, of a link r = m u of length l.
+// The force F above, of a link r = m u of length l.
 vec3 link_force(vec3 r, vec3 u, vec3 t, float m, float l, Springs springs, float softness)
 {
     float ee = softness * softness, both = l * l + ee, mm = m * m + ee, longer = max(l, softness);
@@ -200,8 +200,8 @@ vec3 link_force(vec3 r, vec3 u, vec3 t, float m, float l, Springs springs, float
     return -coil * r - (part * 2.0 * stored * ee / mm) * u + (part * ratio) * across;
 }
 
-// The links' lengths come from their own stretch, not from differences of positions, which would
-// shake stiff springs by rounding.
+// Link lengths come from the stored stretch. Differences of positions would shake stiff springs by
+// their rounding errors.
 void main()
 {
     int strand = first_strand(), n = int(step_params.vertex_count);
@@ -214,7 +214,7 @@ void main()
     Springs springs = springs_of(n - 1);
     float softness = SHORT * root.w / float(n - 1); // e
     vec3 was = position_before(a).xyz;
-    vec3 moved = root_move(root); // by the particle before
+    vec3 moved = root_move(root); // the root's displacement
     vec3 drawn = root_position(root),
          along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     vec3 r = vec3(0.0), force = vec3(0.0); // of the link before
@@ -222,7 +222,7 @@ void main()
     float l = 0.0;
     carry_lead(a);
     positions[a] = vec4(drawn, 1.0);
-    // Link j's force completes particle j - 1's.
+    // The force of link j completes the force on particle j - 1.
     for (int j = 1; j <= n; ++j, a += STRAND_TILE) {
         vec4 style = vec4(0.0), next_v = vec4(0.0);
         vec3 next_r = vec3(0.0), next_force = vec3(0.0);

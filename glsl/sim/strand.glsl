@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A strand on its way through a step: what solvers of particles with an implicit style spring begin
-// with (needs particles.glsl). Macros: STYLED, whether there is a style spring; VARIES, whether it
-// or the forces differ along the strand: then `push`, `decay` and `spring` are means.
+// The state of a strand during a step, for solvers of particles with an implicit style spring
+// (needs particles.glsl). Macros: STYLED: there is a style spring. VARIES: the spring or the forces
+// differ along the strand; then `push`, `decay` and `spring` are means.
 #include "sim/style_spring.h"
 
-const float SAFE_MOVE = 1e15; // metres: keeps squares finite whatever the head does
+const float SAFE_MOVE = 1e15; // m; keeps squares finite whatever the head does
 
 struct Strand {
     int address; // of the root
     vec3 root, root_old, root_velocity;
     float total_length; // of the strand
-    vec3 push;          // what forces add to a velocity
+    vec3 push;          // velocity that forces add
 #if VARIES
     vec3 wind;
 #endif
@@ -52,7 +52,7 @@ vec3 fetch_velocity(Strand strand, int j)
 }
 vec4 fetch_rest(Strand strand, int j) { return texelFetch(rest, strand.address + j * STRAND_TILE); }
 
-// The velocity v of particle j after forces have acted.
+// The velocity v of particle j after the forces have acted.
 vec3 kicked_velocity(Strand strand, int j, vec3 v)
 {
 #if VARIES
@@ -62,7 +62,7 @@ vec3 kicked_velocity(Strand strand, int j, vec3 v)
 #endif
 }
 
-// Particle j's spring.
+// The spring of particle j.
 StyleSpring spring_of(Strand strand, int j)
 {
 #if VARIES
@@ -73,8 +73,8 @@ StyleSpring spring_of(Strand strand, int j)
 #endif
 }
 
-// How far particle j, now at q, would go without constraints. `style` goes from particle to
-// particle, 0 at the root.
+// The displacement that particle j, now at q, would have without constraints. `style` advances from
+// particle to particle and is 0 at the root.
 vec3 predicted_move(Strand strand, int j, vec3 q, inout vec3 style)
 {
     vec3 move = strand.dt * kicked_velocity(strand, j, fetch_velocity(strand, j));

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: MIT
-// The tractrix: the curve of a rigid segment's tail while its head moves straight.
+// The tractrix: the curve of the tail of a rigid segment while its head moves straight.
 //
 // Head h, tail t, length L, d = (t - h)/L. The head moves by S, s = |S|, e = S/s. The tail's
-// velocity lies along the segment, so d obeys d d/ds = (d (d.e) - e)/L. On the sphere of directions
-// this is the flow that takes every d from the pole e to -e, tan(angle to -e) halves by E =
-// e^{-s/L} (stereographically), a Lorentz boost of (1, d) of rapidity s/L. Solved for d':
+// velocity is along the segment, so d obeys d d/ds = (d (d.e) - e)/L. On the sphere of directions
+// this is a flow from the pole e to the pole -e. In stereographic coordinates it scales tan(half
+// the angle to -e) by E = e^{-s/L}, which is a Lorentz boost of (1, d) of rapidity s/L. Solved for
+// d':
 //
 //     d' = ((E^2 (1+a) - (1-a)) e + 2E (d - a e)) / ((1-a) + E^2 (1+a)),     a = d.e
 //
-// Here in a form that cancels nowhere: with M = |d - e|^2 = 2 (1 - a) the denominator is D/2, D = M
-// + E^2 (4 - M), and
+// The code uses a form without cancellation. With M = |d - e|^2 = 2 (1 - a) the denominator is D/2,
+// D = M + E^2 (4 - M), and
 //
 //     d' - d = f/D (A d - B e),     f = 1 - E,  A = 4E - M (1+E),  B = A + 2M.
 //
-// The tail moves by S + L (d' - d), never further than the head.
+// The tail moves by S + L (d' - d), never farther than the head.
 
-// log2(e); exponents below -60 would make D underflow where the head pushes exactly along the
-// segment (M = 0).
+// log2(e). With exponents below -60, D would underflow if the head pushes exactly along the segment
+// (M = 0).
 const float TRACTRIX_LOG2_E = 1.44269504;
 const float TRACTRIX_MAX_EXPONENT = 60.0;
 
 // Turns the unit direction d (head to tail) of a segment of length L > 0 whose head moves by
-// `move`. Gives the new direction; `move` becomes the tail's displacement. Components of `move` up
-// to 1e18 are safe; a move below 1e-18 translates.
+// `move`. Returns the new direction; `move` becomes the tail's displacement. Components of `move`
+// up to 1e18 are safe; a move below 1e-18 only translates the segment.
 vec3 tractrix_turn(vec3 d, float L, inout vec3 move)
 {
     float ss = max(dot(move, move), 1e-36);
@@ -40,17 +41,17 @@ vec3 tractrix_turn(vec3 d, float L, inout vec3 move)
     return d + change;
 }
 
-// To length 1: one Newton step for a direction that is off by rounding only. (Where the head has
-// pushed almost exactly along the segment, by so much that it turned nevertheless, rounding decides
-// where to, and how long it is.)
+// Normalises a direction that is off only by rounding, with one Newton step. (If the head has
+// pushed almost exactly along the segment so far that it flipped, the result's direction and length
+// depend on rounding.)
 vec3 tractrix_renormalise(vec3 d)
 {
     float dd = dot(d, d);
     return d * (abs(dd - 1.0) < 1e-3 ? 1.5 - 0.5 * dd : inversesqrt(dd));
 }
 
-// A unit vector along v and its length, at any scale: squares are formed after dividing by the
-// largest component.
+// The unit vector along v, and its length, at any scale: divides by the largest component before
+// squaring.
 vec3 tractrix_direction(vec3 v, out float len)
 {
     vec3 a = abs(v);
@@ -61,14 +62,14 @@ vec3 tractrix_direction(vec3 v, out float len)
     return largest > 0.0 ? u / norm : u;
 }
 
-// The tail's new position when the head of the segment (h, t) moves to p. A head at rest leaves the
-// tail; a segment without length takes it along to p.
+// The tail's new position when the head of the segment (h, t) moves to p. If the head does not
+// move, the tail stays; a segment without length moves to p.
 vec3 tractrix_step(vec3 h, vec3 t, vec3 p)
 {
     float L, s;
     vec3 d = tractrix_direction(t - h, L);
     vec3 e = tractrix_direction(p - h, s);
-    vec3 unit_move = e * (s / L); // in lengths, so that no scale overflows
+    vec3 unit_move = e * (s / L); // in segment lengths, so that no scale overflows
     if (L == 0.0) return p;
     vec3 turned = tractrix_renormalise(tractrix_turn(d, 1.0, unit_move));
     return s == 0.0 ? t : p + L * turned;

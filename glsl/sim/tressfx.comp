@@ -40,9 +40,9 @@
 #include "sim/tressfx_params.h"
 
 // The strand is corrected in the head's frame with its root at the origin, where the style needs no
-// turning: REST(j) is the direction and length of its segment j, X(j) the vertex. Everything stays
-// in memory: loops of few accesses run as fast there as unrolled ones in registers, and compile in
-// a sixth of the time.
+// rotation. REST(j) is the direction and length of the style's segment j, X(j) the vertex.
+// Everything stays in memory: these loops with few accesses are as fast there as unrolled loops in
+// registers, and compile in a sixth of the time.
 int strand = 0, n = 0; // of the lane, set in main
 int address(int j) { return particle_address(strand, j, n); }
 #define REST(j) texelFetch(rest, address(j))
@@ -75,12 +75,12 @@ float global_at(int j)
 #endif
 }
 
-// What the head does to the strand in this step, in the head's frame at its end.
+// The motion of the head in this step, in the head's frame at its end.
 struct Carried {
     vec3 root_old, root; // in the world
-    vec3 first_old;      // where the first segment, now REST(1), pointed
-    vec3 first_velocity; // of vertex 1 in the step before
-    float share;         // of the root's rigid motion that the whole strand takes part in
+    vec3 first_old;      // old direction of the first segment, which is now REST(1)
+    vec3 first_velocity; // of vertex 1 in the previous step
+    float share;         // share of the root's rigid motion that moves the whole strand
 };
 
 Carried carried_by_head()
@@ -96,17 +96,17 @@ Carried carried_by_head()
     vec3 jerk = moved - step_params.dt * carried.first_velocity;
     float threshold = tressfx_params.shock_threshold;
     carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : tressfx_params.shock;
-    velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the next step's jerk
+    velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the jerk of the next step
     return carried;
 }
 
-// A vertex between a short segment and one more than MOST_LEVER times as long gives way by less
-// than its share, and exchanges less: it would turn the short segment, and with it the frame that
-// the long one is held in, by more than it mends.
+// A vertex between a short segment and one that is more than MOST_LEVER times as long moves and
+// exchanges by less than its share. Otherwise it would turn the short segment, and with it the
+// frame of the long one, by more than it corrects.
 const float MOST_LEVER = 2.0;
 
-// Leaves the predicted vertices in `positions` and where they came from in `velocities`, both in
-// the head's frame.
+// Stores the predicted vertices in `positions` and their previous positions in `velocities`, both
+// in the head's frame.
 void predict(Carried carried)
 {
     vec3 wind = strand_wind(texelFetch(rest, address(0)).xyz, carried.root),
@@ -117,7 +117,7 @@ void predict(Carried carried)
           last_global = tressfx_params.global_range * float(n), share = carried.share;
     home = rotate(to_head, home);
 #if !TRESSFX4
-    // The others' velocities are relative to the motion that the whole strand takes part in.
+    // The other vertices' velocities are relative to the motion that moves the whole strand.
     vec3 ahead = (1.0 - share) * carried.first_velocity;
     float exchanged = tressfx_params.exchanged;
 #endif
@@ -169,9 +169,9 @@ void keep_local_shape()
 
 #if TRESSFX4
 
-// The force -(t x w) x t of the air on a segment t, towards where the air goes. It has TressFX's
-// unit of length, the centimetre, built in, and grows with the square of a stretched segment: the
-// clamp keeps a storm finite.
+// The force of the wind on a segment t, -(t x w) x t, towards where the air moves. TressFX's unit
+// of length, the centimetre, is built into it, and it grows with the square of a stretched segment;
+// the clamp keeps a storm finite.
 void blow()
 {
     vec4 root = texelFetch(rest, address(0));
@@ -193,11 +193,11 @@ void keep_edge(inout vec3 a, inout vec3 b, float rest_length, float share_a, flo
     b -= share_b * excess;
 }
 
-// The even edges (0 1), (2 3) .. and the odd ones (1 2), (3 4) .. in one sweep: an odd edge has its
-// turn as soon as the even edges on both sides have had theirs. The head holds vertices 0 and 1.
+// Corrects the even edges (0 1), (2 3) .. and the odd edges (1 2), (3 4) .. in one sweep: an odd
+// edge follows as soon as the even edges on both sides are done. The head holds vertices 0 and 1.
 void keep_lengths()
 {
-    vec3 b = X(1); // the end of the even edge before
+    vec3 b = X(1); // end of the previous even edge
     for (int j = 2; j < n; j += 2) {
         vec3 c = X(j), d = X(min(j + 1, n - 1));
         if (j + 1 < n) keep_edge(c, d, REST(min(j + 1, n - 1)).w, 0.5, 0.5);
@@ -213,15 +213,15 @@ void keep_lengths()
 
 // The rows of J J^T lambda = |s| (|s| - l), eliminated from the root on.
 struct Rows {
-    vec3 before, s;         // the vertex before, the segment that ends there
-    float per_pivot, right; // of the last row
+    vec3 before, s;         // the previous vertex, and the segment from it
+    float per_pivot, right; // of the previous row
 };
 
 Rows open_rows() { return Rows(X(1), vec3(0.0), 0.0, 0.0); }
 
-// What elimination leaves of the right side of the row of the segment that ends in vertex j at x:
-// it waits in the fourth component of `positions`, the factor that brings the row before to this
-// one in that of `velocities`.
+// Eliminates the row of the segment that ends in vertex j at x, and returns its right-hand side,
+// which the caller stores in the fourth component of `positions`. Stores the elimination factor in
+// that of `velocities`.
 float add_row(inout Rows rows, int j, vec3 x)
 {
     vec3 s = x - rows.before;
@@ -235,10 +235,10 @@ float add_row(inout Rows rows, int j, vec3 x)
     return right;
 }
 
-// From the tip on, lambda of each segment out of its row, and with it the row of (I + K) y = x,
-// eliminated in turn: as resistors in a ladder, one to the ground at each vertex, are taken
-// together, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs no
-// difference. Leaves y_j = xyz + w y_{j-1}.
+// From the tip on: solves for lambda of each segment and at the same time eliminates the row of (I
+// + K) y = x. The diagonal is summed like a ladder of resistors with one resistor to ground at each
+// vertex, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs no
+// subtraction. Stores y_j = xyz + w y_{j-1}.
 void pull_together()
 {
     float lambda = 0.0, factor = 0.0, own = 0.0, share = 0.0;
@@ -272,7 +272,7 @@ void keep_lengths()
 
 #endif
 
-// Lengths, velocities and the way back to the world.
+// Sets lengths and velocities and transforms back to the world.
 void finish(Carried carried)
 {
     vec4 to_world = frame_rotation;
@@ -290,7 +290,8 @@ void finish(Carried carried)
         vec3 here = j > 1 ? now.xyz + now.w * before : now.xyz;
         along = unit(here - before, segment.xyz);
         x += segment.w * along;
-        // Turning x would round it by more than a short segment may be off.
+        // Summing rotated segments; rotating x would cause rounding errors larger than a short
+        // segment permits.
         world += segment.w * rotate(to_world, along);
         before = here;
 #endif
@@ -326,6 +327,6 @@ void main()
 #else
     keep_lengths();
 #endif
-    // Collisions push vertices out of capsules here, where TressFX does.
+    // TressFX pushes vertices out of capsules at this point; here the collision pass does.
     finish(carried);
 }

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-// A symmetric tridiagonal system, row k: off_k u_{k-1} + diag_k u_k + off_{k+1} u_{k+1} = right_k,
-// solved without arrays of its own (Thomas 1949): rows are eliminated as they come, then the
-// unknowns follow in the opposite order,
+// A symmetric tridiagonal system with rows off_k u_{k-1} + diag_k u_k + off_{k+1} u_{k+1} =
+// right_k, solved without arrays of its own (Thomas 1949). Rows are eliminated as they come; then
+// the unknowns follow in the opposite order:
 //
 //     factor_k = off_k / pivot_{k-1},   pivot_k = diag_k - off_k factor_k,
 //     value_k = (right_k - off_k value_{k-1}) / pivot_k
 //     u_{k-1} = value_{k-1} - factor_k u_k
 //
-// so that only value_k and factor_k must be kept. Either end may come first. Matrices here are
-// positive definite: no pivoting.
+// Only value_k and factor_k must be stored. The elimination may start at either end. All matrices
+// here are positive definite, so no pivoting is needed.
 
-// The least pivot: what a broken segment (length 0, NaN) leaves stays finite, and is found by its
-// length afterwards.
+// The smallest pivot. It keeps the result of a broken segment (length 0, NaN) finite; the segment's
+// wrong length is detected later.
 const float LEAST_PIVOT = 1e-30;
 
 struct Row {
-    float inverse; // of the pivot
+    float inverse; // 1 / pivot
     float value;
 };
 
-struct Row3 { // three right sides
+struct Row3 { // for three right-hand sides
     float inverse;
     vec3 value;
 };
@@ -27,8 +27,8 @@ struct Row3 { // three right sides
 const Row NO_ROW = Row(0.0, 0.0);
 const Row3 NO_ROW3 = Row3(0.0, vec3(0.0));
 
-// `factor` becomes what back-substitution needs: u of `before` is its value less factor times u of
-// this row.
+// `factor` is for back-substitution: the unknown of `before` is its value minus factor times the
+// unknown of this row.
 Row eliminate(Row before, float off, float diagonal, float right, out float factor)
 {
     factor = off * before.inverse;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What all passes of a section's volume share (sim/volume.h).
+// Shared by all passes of a section's volume (sim/volume.h).
 //
-// WHO 0: a strand a lane
-//     1: VOLUME_CELLS_A_LANE cells a lane
-// GRAIN: so many neighbours in a strand lie in the cell of the middle one
+// WHO 0: one strand per lane
+//     1: VOLUME_CELLS_A_LANE cells per lane
+// GRAIN: number of neighbouring particles that count as being in the cell of the middle one
 #include "sim/volume_params.h"
 
 layout(local_size_x = GROUP_SIZE) in;
@@ -18,7 +18,8 @@ layout(local_size_x = GROUP_SIZE) in;
 
 layout(binding = BIND_POSITION) uniform samplerBuffer position;
 
-// The cell of a grain that begins with particle j of a strand (its root's address), -1: none.
+// The cell of the grain that begins with particle j of a strand (`first`: address of its root); -1
+// if outside.
 int grain_cell(int first, int j, int last)
 {
     int middle = grain_middle(j, GRAIN, last);
@@ -28,13 +29,13 @@ int grain_cell(int first, int j, int last)
                          dot(volume_params.axis[2], x), size.x, size.y, size.z);
 }
 
-// Whether a particle of this velocity relative to the head's takes part.
+// Whether a particle with this velocity relative to the head takes part.
 bool is_slow(vec3 v) { return all(lessThan(abs(v), vec3(VOLUME_FASTEST))); }
 
-// Its share of the way from the root to the tip.
+// The particle's place as a share of the way from root to tip.
 float share_of(int j, int n) { return float(j) / float(n - 1); }
 #else
-// The k-th cell of the lane; lanes side by side have cells side by side.
+// The k-th cell of the lane; neighbouring lanes have neighbouring cells.
 int lane_cell(int k)
 {
     return (group_index() * VOLUME_CELLS_A_LANE + k) * GROUP_SIZE + int(gl_LocalInvocationID.x);

@@ -9,9 +9,9 @@ layout(std430, binding = BIND_VOLUME_CELLS_OUT) writeonly buffer Cells { vec4 ce
 layout(std430, binding = BIND_VOLUME_FACES_OUT) writeonly buffer Faces { vec2 faces[]; };
 layout(std430, binding = BIND_VOLUME_DENSE_OUT) buffer Dense { uint dense[]; };
 
-// A groom that has moved by a little has a few particles in other cells.
+// Tolerance: a groom that has moved slightly has a few particles in other cells.
 const float SLACK = 1.05, SLACK_PARTICLES = 1.0;
-// Denser by so much more, a cell lets nothing come closer; by twice as much, what came bounces.
+// Excess density from which a cell lets nothing approach; at twice the excess, hair bounces back.
 const float STOP = 0.1;
 
 vec2 sum_at(int cell)

@@ -82,7 +82,6 @@ static const Part PARTS[] = {
     {ADD, CONE, BOTH, 0.014, {0.014, -0.220, 0.012, 0.006}, {0.130, -0.224, -0.030, 0.007}},
     {KEEP, EGG, ONE, 0.030, {0, -0.080, -0.030}, {0.185, 0.225, 0.170}},
 };
-// clang-format on
 
 // Quilez's bound of an ellipsoid's distance, with exact sign: (|p/r| - 1) |p/r| / |p/r^2|.
 static double egg_distance(const Part *part, const Double3 at)
