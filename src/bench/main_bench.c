@@ -272,19 +272,19 @@ static Result try_renderer(const Gpu *gpu, Raster raster, const RendererOptions 
 }
 
 // Computes the table of Marschner shading.
-static void try_tables(Result *worst, FILE *stream, Error *error)
+static void try_tables(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
 {
-    ScatterTables tables = {0};
-    unsigned texture;
+    ScatterTables tables = {.stock = gpu->tables};
+    ScatterTable *table;
     Error why = {{0}};
-    Result result = scatter_tables_find(&tables, 1.5f, 0.2f, &texture, &why);
+    Result result = scatter_tables_find(&tables, 1.5f, 0.2f, &table, &why);
     report("scatter.comp", result, &why, worst, stream, error);
     scatter_tables_destroy(&tables);
 }
 
 static void try_renderers(const Gpu *gpu, Result *worst, FILE *stream, Error *error)
 {
-    try_tables(worst, stream, error);
+    try_tables(gpu, worst, stream, error);
     static const char *const rasters[] = {"", "quads", "blocks", "compute"};
     static const struct {
         const char *name;
@@ -337,7 +337,7 @@ static Result run_shaders(const BenchOptions *arguments, const Gpu *gpu, Error *
     for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i) {
         GLuint program = 0;
         Result built = shader_build_compute(&program, checks[i].file, checks[i].defines, &why);
-        if (built == RESULT_OK) glDeleteProgram(program);
+        if (built == RESULT_OK) shader_release(program);
         report(checks[i].file, built, &why, &worst, stream, error);
     }
     report("sim/inbetween.comp", try_inbetween(gpu, &why), &why, &worst, stream, error);

@@ -52,7 +52,7 @@ static void run_destroy(Run *run)
     hair_destroy(&run->hair);
     params_destroy_section(&run->params);
     gpu_timer_destroy(&run->timer);
-    if (run->program) glDeleteProgram(run->program);
+    shader_release(run->program);
     gpu_buffer_destroy(&run->before);
     gpu_buffer_destroy(&run->worst);
     gpu_buffer_destroy(&run->first);

@@ -117,7 +117,7 @@ static Result run_check(const Gpu *gpu, const char *file, const ShaderDefine *de
         result = gpu_check(file, error);
     }
     for (int i = 0; i < count; ++i) gpu_buffer_destroy(&buffers[i]);
-    if (program) glDeleteProgram(program);
+    shader_release(program);
     return result;
 }
 

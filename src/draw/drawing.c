@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "draw/drawing.h"
 
-#include "draw/scatter_tables.h"
 #include "gpu/gpu_uniforms.h"
 #include "image/tone.h"
 #include "sim/hair.h"
@@ -311,8 +310,6 @@ static unsigned shadow_features(const RendererOptions *options, const DrawnMesh 
 
 static Result make_room(Drawing *drawing, Error *error)
 {
-    if (!drawing->scatter) drawing->scatter = calloc(1, sizeof *drawing->scatter);
-    if (!drawing->scatter) return error_set(error, RESULT_FAILED, "no memory to draw hair");
     if (drawing->look_room >= drawing->item_count) return RESULT_OK;
     Look *looks = realloc(drawing->looks, drawing->item_count * sizeof *looks);
     if (!looks)
@@ -348,9 +345,11 @@ static Result make_look(Drawing *drawing, const RendererOptions *options, const 
     const float *mean = item->hair->is_painted ? item->hair->paint_mean : look->material.color;
     memcpy(look->mean_color, mean, sizeof look->mean_color);
     if (item->material->lobes == LOBES_GAUSS) look->features |= LOOK_GAUSS;
-    TRY(scatter_tables_find(drawing->scatter, item->material->refraction,
-                            glm_rad(item->material->azimuthal_roughness), &look->scatter, error));
-    TRY(scatter_tables_read(drawing->scatter, look->scatter, &look->table, error));
+    ScatterTable *table;
+    TRY(scatter_tables_find(&drawing->tables, item->material->refraction,
+                            glm_rad(item->material->azimuthal_roughness), &table, error));
+    TRY(scatter_table_read(table, &look->table, error));
+    look->scatter = scatter_table_texture(table);
     fit_albedo(look, look->table);
     return RESULT_OK;
 }
@@ -376,8 +375,7 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Dra
 
 void drawing_destroy(Drawing *drawing)
 {
-    if (drawing->scatter) scatter_tables_destroy(drawing->scatter);
-    free(drawing->scatter);
+    scatter_tables_destroy(&drawing->tables);
     free(drawing->looks);
     *drawing = (Drawing){0};
 }

@@ -7,10 +7,11 @@
 #include "draw/drawn_mesh.h"
 #include "draw/look.h"
 #include "draw/renderer_options.h"
+#include "draw/scatter_tables.h"
 
 #include "glsl/draw/draw.h"
 
-// A zeroed struct is empty.
+// Begins with {.tables.stock = gpu->tables}.
 typedef struct Drawing {
     DrawParams whole; // of the image
     DrawParams draw;  // with the values of the band that is being drawn
@@ -18,9 +19,9 @@ typedef struct Drawing {
     uint32_t item_count;
     Look *looks; // [look_room], owned: of the items
     uint32_t look_room;
-    int mesh_box[4];               // samples: x, y lowest, highest; empty without a mesh
-    int base_box[4];               // the same of mesh and floor
-    struct ScatterTables *scatter; // owned
+    int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
+    int base_box[4]; // the same of mesh and floor
+    ScatterTables tables;
 } Drawing;
 
 // The conversion from light to colour: a Tone, or TONE_LIGHT if pixels keep linear light.

@@ -47,7 +47,8 @@ static Result divide(Renderer *renderer, Error *error)
 Result renderer_create(Renderer *renderer, const Gpu *gpu, GpuTimer *timer,
                        const RendererOptions *asked, Error *error)
 {
-    *renderer = (Renderer){.options = settle(asked), .gpu = gpu, .timer = timer};
+    *renderer = (Renderer){
+        .options = settle(asked), .gpu = gpu, .timer = timer, .drawing.tables.stock = gpu->tables};
     RendererOptions *options = &renderer->options;
     if (options->samples != 1 && options->samples != 2 && options->samples != 4)
         return error_set(error, RESULT_USAGE, "--samples %d: expected 1, 2 or 4", options->samples);

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "draw/scatter_tables.h"
 #include "gpu/gpu.h"
+#include "gpu/shader.h"
 
 #include "glsl/draw/draw.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-enum { GROUP_SIZE = 32, COLORS_EACH = 4 };
+enum {
+    GROUP_SIZE = 32,
+    COLORS_EACH = 4,
+    NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS
+};
 _Static_assert(SCATTER_COLORS % COLORS_EACH == 0, "scatter.comp makes so many at a time");
+
+typedef struct Fibre {
+    float refraction, roughness;
+} Fibre;
+
+struct ScatterTable {
+    Fibre fibre;
+    GLuint texture;
+    bool is_read;
+    float values[NODES][4]; // as the texture has them
+};
 
 static GLuint create_texture(void)
 {
@@ -25,66 +42,84 @@ static GLuint create_texture(void)
     return texture;
 }
 
-static void fill(GLuint program, const ScatterTable *table)
+static Result fill(GLuint texture, const Fibre *fibre, Error *error)
 {
-    glBindImageTexture(0, table->texture, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP_SIZE}, {NULL, 0}};
+    GLuint program;
+    TRY(shader_build_compute(&program, "draw/scatter.comp", defines, error));
+    glBindImageTexture(0, texture, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     glUseProgram(program);
-    glUniform2f(0, table->refraction, table->roughness);
+    glUniform2f(0, fibre->refraction, fibre->roughness);
     glDispatchCompute((SCATTER_AZIMUTHS + GROUP_SIZE - 1) / GROUP_SIZE, SCATTER_INCLINATIONS,
                       SCATTER_COLORS / COLORS_EACH);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+    shader_release(program);
+    return gpu_check("the table of marschner shading", error);
 }
 
-static Result add(ScatterTables *tables, float refraction, float roughness, Error *error)
+static void destroy_table(void *value)
 {
-    const ShaderDefine defines[] = {{"GROUP_SIZE", GROUP_SIZE}, {NULL, 0}};
-    if (!tables->program) {
-        TRY(shader_build_compute(&tables->program, "draw/scatter.comp", defines, error));
+    glDeleteTextures(1, &((ScatterTable *)value)->texture);
+}
+
+static Result fail_memory(Error *error)
+{
+    return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
+}
+
+static Result make(ScatterTable **table, Stock *stock, const Fibre *fibre, Error *error)
+{
+    GLuint texture = create_texture();
+    Result result = fill(texture, fibre, error);
+    if (result == RESULT_OK) {
+        *table = stock_add(stock, fibre, sizeof *fibre, sizeof **table, destroy_table);
+        if (!*table) result = fail_memory(error);
     }
-    ScatterTable *more = realloc(tables->tables, (tables->count + 1) * sizeof *more);
-    if (!more) return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
-    tables->tables = more;
-    ScatterTable *table = &tables->tables[tables->count++];
-    *table = (ScatterTable){refraction, roughness, NULL, create_texture()};
-    fill(tables->program, table);
-    return gpu_check("the table of marschner shading", error);
+    if (result == RESULT_OK)
+        (*table)->fibre = *fibre, (*table)->texture = texture;
+    else
+        glDeleteTextures(1, &texture);
+    return result;
 }
 
 Result scatter_tables_find(ScatterTables *tables, float refraction, float roughness,
-                           GLuint *texture, Error *error)
+                           ScatterTable **table, Error *error)
 {
+    const Fibre fibre = {refraction, roughness};
     for (uint32_t i = 0; i < tables->count; ++i) {
-        *texture = tables->tables[i].texture;
-        if (tables->tables[i].refraction == refraction && tables->tables[i].roughness == roughness)
-            return RESULT_OK;
+        *table = tables->taken[i];
+        if (memcmp(&(*table)->fibre, &fibre, sizeof fibre) == 0) return RESULT_OK;
     }
-    TRY(add(tables, refraction, roughness, error));
-    *texture = tables->tables[tables->count - 1].texture;
+    ScatterTable **more = realloc(tables->taken, (tables->count + 1) * sizeof(ScatterTable *));
+    if (!more) return fail_memory(error);
+    tables->taken = more;
+    *table = stock_take(tables->stock, &fibre, sizeof fibre);
+    if (!*table) TRY(make(table, tables->stock, &fibre, error));
+    tables->taken[tables->count++] = *table;
     return RESULT_OK;
-}
-
-Result scatter_tables_read(ScatterTables *tables, GLuint texture, FibreTable *table, Error *error)
-{
-    const size_t count = (size_t)SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS;
-    ScatterTable *mine = tables->tables;
-    while (mine->texture != texture) ++mine;
-    if (!mine->values) {
-        mine->values = malloc(count * sizeof *mine->values);
-        if (!mine->values)
-            return error_set(error, RESULT_FAILED, "no memory for a table of marschner shading");
-        glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
-        glBindTexture(GL_TEXTURE_3D, texture);
-        glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, mine->values);
-    }
-    table->values = (const float(*)[4])mine->values;
-    return gpu_check("the table of marschner shading", error);
 }
 
 void scatter_tables_destroy(ScatterTables *tables)
 {
-    for (uint32_t i = 0; i < tables->count; ++i) free(tables->tables[i].values);
-    for (uint32_t i = 0; i < tables->count; ++i) glDeleteTextures(1, &tables->tables[i].texture);
-    free(tables->tables);
-    if (tables->program) glDeleteProgram(tables->program);
+    for (uint32_t i = 0; i < tables->count; ++i) stock_return(tables->stock, tables->taken[i]);
+    free(tables->taken);
     *tables = (ScatterTables){0};
+}
+
+unsigned scatter_table_texture(const ScatterTable *table)
+{
+    return table->texture;
+}
+
+Result scatter_table_read(ScatterTable *table, FibreTable *values, Error *error)
+{
+    if (!table->is_read) {
+        glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
+        glBindTexture(GL_TEXTURE_3D, table->texture);
+        glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, table->values);
+        TRY(gpu_check("the table of marschner shading", error));
+        table->is_read = true;
+    }
+    values->values = (const float(*)[4])table->values;
+    return RESULT_OK;
 }

@@ -13,6 +13,12 @@
 #include <string.h>
 #include <sys/utsname.h>
 
+// What is kept for the next scene while nobody uses it. On a CPU driver a program takes some kB to
+// a MB; a table takes 5 MB.
+enum { MOST_PROGRAMS = 64, MOST_TABLES = 4 };
+
+static const Gpu NOBODY; // for threads whose context belongs to the host again
+
 // --- What the context can do.
 
 static void copy_string(char *to, size_t size, GLenum name)
@@ -265,14 +271,25 @@ static Result refuse(const Search *search, Error *error)
         search->attempts.text, *sign.text ? "; " : "", sign.text);
 }
 
-static Result use_uniforms(Gpu *gpu, Error *error)
+static void use(const Gpu *gpu)
+{
+    gpu_uniforms_use(gpu->uniforms);
+    shader_use_programs(gpu->programs);
+    shader_assume_ulps(gpu->ulps);
+}
+
+static Result make_room(Gpu *gpu, Error *error)
 {
     gpu->uniforms = gpu_uniforms_create();
-    if (!gpu->uniforms) {
+    gpu->programs = calloc(1, sizeof *gpu->programs);
+    gpu->tables = calloc(1, sizeof *gpu->tables);
+    if (!gpu->uniforms || !gpu->programs || !gpu->tables) {
         gpu_destroy(gpu);
-        return error_set(error, RESULT_FAILED, "no memory for uniform blocks");
+        return error_set(error, RESULT_FAILED, "no memory for what scenes share");
     }
-    gpu_uniforms_use(gpu->uniforms);
+    gpu->programs->most = MOST_PROGRAMS;
+    gpu->tables->most = MOST_TABLES;
+    use(gpu);
     return RESULT_OK;
 }
 
@@ -282,9 +299,8 @@ Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error)
     Search search = {.options = *options};
     TRY(assumptions_read(&search.assumptions, error));
     if (try_all(gpu, &search) != RESULT_OK) return refuse(&search, error);
-    TRY(use_uniforms(gpu, error));
+    TRY(make_room(gpu, error));
     explain_choice(gpu, &search);
-    shader_assume_ulps(search.assumptions.ulps);
     if (options->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -304,22 +320,21 @@ Result gpu_borrow(Gpu *gpu, Error *error)
     gpu_error_forget();
     TRY(read_limits(gpu, error));
     assume(gpu, &assumptions);
-    return use_uniforms(gpu, error);
+    return make_room(gpu, error);
 }
 
 Result gpu_enter(const Gpu *gpu, Error *error)
 {
     TRY(gpu_current_check(error));
     gpu_error_forget();
-    gpu_uniforms_use(gpu->uniforms);
+    use(gpu);
     gpu_uniforms_forget();
-    shader_assume_ulps(gpu->ulps);
     return RESULT_OK;
 }
 
 void gpu_leave(void)
 {
-    gpu_uniforms_use(NULL);
+    use(&NOBODY);
     gpu_error_forget();
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
@@ -333,12 +348,30 @@ void gpu_leave(void)
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-void gpu_destroy(Gpu *gpu)
+static void end_stock(Stock *stock, bool lost)
 {
+    if (stock) stock_destroy(stock, lost);
+    free(stock);
+}
+
+static void end(Gpu *gpu, bool lost)
+{
+    end_stock(gpu->tables, lost);
+    end_stock(gpu->programs, lost);
+    gpu_uniforms_destroy(gpu->uniforms, lost);
     gpu_egl_destroy(&gpu->egl);
     gpu_osmesa_destroy(gpu->osmesa);
-    gpu_uniforms_destroy(gpu->uniforms);
     *gpu = (Gpu){0};
+}
+
+void gpu_destroy(Gpu *gpu)
+{
+    end(gpu, false);
+}
+
+void gpu_lose(Gpu *gpu)
+{
+    end(gpu, true);
 }
 
 // --- The list of devices.

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/params.h"
+#include "base/stock.h"
 #include "gpu/assume.h"
 #include "gpu/gpu_device.h"
 #include "gpu/gpu_egl.h"
@@ -55,6 +56,9 @@ typedef struct Gpu {
     EglContext egl;               // zeroed: not by EGL, or borrowed
     struct GpuOsMesa *osmesa;     // NULL: not by OSMesa
     struct GpuUniforms *uniforms; // owned
+    // Owned: what scenes share that are simulated and drawn one after the other, or side by side.
+    Stock *programs; // shaders that are built (shader.h)
+    Stock *tables;   // of shading (draw/scatter_tables.h)
 } Gpu;
 
 // Makes a context and makes it current, as the environment's assumptions have it (gpu/assume.h).
@@ -62,6 +66,9 @@ typedef struct Gpu {
 // that says what was tried, why it failed and which package helps.
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error);
 void gpu_destroy(Gpu *gpu);
+
+// The same where the context is gone with all that it had: frees memory alone.
+void gpu_lose(Gpu *gpu);
 
 // The same for a context of somebody else's that is current on this thread, by EGL or GLX: it stays
 // his. RESULT_NO_GL if there is none, or it offers too little.

@@ -77,9 +77,10 @@ GpuUniforms *gpu_uniforms_create(void)
     return calloc(1, sizeof(GpuUniforms));
 }
 
-void gpu_uniforms_destroy(GpuUniforms *uniforms)
+void gpu_uniforms_destroy(GpuUniforms *uniforms, bool lost)
 {
     if (ring == uniforms) ring = NULL;
+    if (uniforms && uniforms->buffer && !lost) glDeleteBuffers(1, &uniforms->buffer);
     free(uniforms);
 }
 

@@ -7,6 +7,7 @@
 
 #include <epoxy/gl.h>
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { GPU_UNIFORMS_BINDINGS = 8, GPU_UNIFORMS_MOST = 1 << 14 };
@@ -16,10 +17,11 @@ enum { GPU_UNIFORMS_BINDINGS = 8, GPU_UNIFORMS_MOST = 1 << 14 };
 // else may bind uniform buffers.
 void gpu_uniforms_set(GLuint binding, const void *data, size_t size);
 
-// The ring of a context: its buffer goes with the context. NULL when memory is short.
+// The ring of a context. NULL when memory is short. `lost`: the context is gone, and the buffer
+// with it.
 typedef struct GpuUniforms GpuUniforms;
 GpuUniforms *gpu_uniforms_create(void);
-void gpu_uniforms_destroy(GpuUniforms *uniforms);
+void gpu_uniforms_destroy(GpuUniforms *uniforms, bool lost);
 
 // From now on this thread's blocks lie in that ring, its current context's; NULL: in none.
 void gpu_uniforms_use(GpuUniforms *uniforms);

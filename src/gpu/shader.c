@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "base/outfile.h"
+#include "base/stock.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -11,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_FILES = 32, MAX_LOG = 4096 };
+enum { MAX_FILES = 32, MAX_LOG = 4096, MAX_KEY = 1024 };
 
 static const char NO_REASON[] = "the driver refuses it and gives no reason";
 
@@ -20,6 +21,7 @@ static const GlslSource *added_sources = NONE;
 static bool warnings_are_errors;
 static atomic_bool environment_ignored;
 static _Thread_local int assumed_ulps; // of the current context
+static _Thread_local Stock *programs;  // of the current context
 
 void shader_add_sources(const GlslSource *sources)
 {
@@ -34,6 +36,11 @@ void shader_treat_warnings_as_errors(bool on)
 void shader_assume_ulps(int ulps)
 {
     assumed_ulps = ulps;
+}
+
+void shader_use_programs(Stock *stock)
+{
+    programs = stock;
 }
 
 void shader_ignore_environment(void)
@@ -250,11 +257,11 @@ typedef struct Stage {
 
 static Result fail_memory(const char *file, Error *error)
 {
-    return error_set(error, RESULT_FAILED, "glsl/%s: the driver has no memory for it", file);
+    return error_set(error, RESULT_FAILED, "glsl/%s: no memory for it", file);
 }
 
-static Result build(GLuint *program, const Stage *stages, int count, const ShaderDefine *defines,
-                    Error *error)
+static Result make(GLuint *program, const Stage *stages, int count, const ShaderDefine *defines,
+                   Error *error)
 {
     *program = glCreateProgram();
     Result result = *program ? RESULT_OK : fail_memory(stages[count - 1].file, error);
@@ -273,6 +280,61 @@ static Result build(GLuint *program, const Stage *stages, int count, const Shade
     return result;
 }
 
+// --- Programs are kept by what their text follows from: files and macros.
+
+typedef struct Key {
+    char text[MAX_KEY];
+    size_t size;
+} Key;
+
+static void add_word(Key *key, const char *word, int value)
+{
+    size_t room = key->size < MAX_KEY ? MAX_KEY - key->size : 0;
+    key->size += (size_t)snprintf(key->text + MAX_KEY - room, room, "%s %d ", word, value);
+}
+
+static Result write_key(Key *key, const Stage *stages, int count, const ShaderDefine *defines,
+                        Error *error)
+{
+    key->size = 0;
+    for (int i = 0; i < count; ++i) add_word(key, stages[i].file, assumed_ulps);
+    for (; defines && defines->name; ++defines) add_word(key, defines->name, defines->value);
+    if (key->size < MAX_KEY) return RESULT_OK;
+    return error_set(error, RESULT_FAILED, "glsl/%s: too many macros", stages[count - 1].file);
+}
+
+static void destroy_program(void *value)
+{
+    glDeleteProgram(*(GLuint *)value);
+}
+
+static Result keep(GLuint *program, const Key *key, const char *file, Error *error)
+{
+    GLuint *kept = stock_add(programs, key->text, key->size, sizeof *kept, destroy_program);
+    if (kept) {
+        *kept = *program;
+        return RESULT_OK;
+    }
+    glDeleteProgram(*program);
+    *program = 0;
+    return fail_memory(file, error);
+}
+
+static Result build(GLuint *program, const Stage *stages, int count, const ShaderDefine *defines,
+                    Error *error)
+{
+    Key key;
+    *program = 0;
+    TRY(write_key(&key, stages, count, defines, error));
+    const GLuint *known = stock_take(programs, key.text, key.size);
+    if (known) {
+        *program = *known;
+        return RESULT_OK;
+    }
+    TRY(make(program, stages, count, defines, error));
+    return keep(program, &key, stages[count - 1].file, error);
+}
+
 Result shader_build_compute(GLuint *program, const char *file, const ShaderDefine *defines,
                             Error *error)
 {
@@ -284,4 +346,13 @@ Result shader_build_draw(GLuint *program, const char *vertex_file, const char *f
 {
     const Stage stages[] = {{GL_VERTEX_SHADER, vertex_file}, {GL_FRAGMENT_SHADER, fragment_file}};
     return build(program, stages, 2, defines, error);
+}
+
+void shader_release(GLuint program)
+{
+    for (GLuint *kept = stock_next(programs, NULL); kept; kept = stock_next(programs, kept))
+        if (*kept == program) {
+            stock_return(programs, kept);
+            return;
+        }
 }

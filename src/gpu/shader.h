@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/stock.h"
 
 #include <epoxy/gl.h>
 
@@ -30,13 +31,22 @@ typedef struct ShaderDefine {
     int value;
 } ShaderDefine;
 
-// Builds a program from a compute shader, or from a vertex and a fragment shader. `defines` may be
-// NULL. A file may `#include "other.glsl"`; each file is taken once. On failure *program is 0 and
-// the line is "glsl/FILE:LINE: compiler's message" (RESULT_FAILED). Free it with glDeleteProgram.
+// Builds a program from a compute shader, or from a vertex and a fragment shader, unless the
+// context has one of the same files and macros: all who asked for it share it, so each sets its
+// uniforms before every use. `defines` may be NULL. A file may `#include "other.glsl"`; each file
+// is taken once. On failure *program is 0 and the line is "glsl/FILE:LINE: compiler's message"
+// (RESULT_FAILED).
 Result shader_build_compute(GLuint *program, const char *file, const ShaderDefine *defines,
                             Error *error);
 Result shader_build_draw(GLuint *program, const char *vertex_file, const char *fragment_file,
                          const ShaderDefine *defines, Error *error);
+
+// Gives back what a call above has returned; 0: nothing. The program stays for the next who asks
+// for it, as long as its stock keeps it.
+void shader_release(GLuint program);
+
+// From now on this thread's programs are kept in that stock, its current context's.
+void shader_use_programs(Stock *programs);
 
 // The folder of TRACTRIX_GLSL_DIR; NULL: the shaders are the program's own. Where
 // TRACTRIX_GLSL_DUMP names a folder, the joined text of every shader that is built is written

@@ -3,7 +3,6 @@
 
 #include "base/parallel.h"
 #include "gpu/gl_defaults.h"
-#include "gpu/gpu_uniforms.h"
 #include "gpu/shader.h"
 
 #include <stdlib.h>
@@ -93,7 +92,7 @@ void library_drop_device(TractrixDevice *device)
     if (atomic_fetch_sub(&device->users, 1) > 1) return;
     if (device->process != getpid()) return; // a fork: thread, context, locks are the parent's
     if (library_on_device(device, close_gpu, &device->gpu, &unused) != RESULT_OK)
-        gpu_uniforms_destroy(device->gpu.uniforms); // the host's context is gone
+        gpu_lose(&device->gpu); // the host's context is gone
     if (!device->borrowed) {
         end_thread(device);
         pthread_cond_destroy(&device->changed);

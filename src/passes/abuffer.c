@@ -71,8 +71,7 @@ Result abuffer_add_base(ABuffer *abuffer, Error *error)
 
 void abuffer_destroy(ABuffer *abuffer)
 {
-    for (int i = 0; i < 2; ++i)
-        if (abuffer->resolve[i]) glDeleteProgram(abuffer->resolve[i]);
+    for (int i = 0; i < 2; ++i) shader_release(abuffer->resolve[i]);
     if (abuffer->vertex_array) glDeleteVertexArrays(1, &abuffer->vertex_array);
     gpu_buffer_destroy(&abuffer->nodes);
     gpu_buffer_destroy(&abuffer->heads);

@@ -30,10 +30,10 @@ bool base_layer_is_needed(const BaseLayer *base, const Floor *floor)
 static void forget(BaseLayer *base)
 {
     GLuint *finish = &base->finish[0][0];
-    if (base->light) glDeleteProgram(base->light);
+    shader_release(base->light);
     base->light = 0;
     for (int i = 0; i < 6; ++i) {
-        if (finish[i]) glDeleteProgram(finish[i]);
+        shader_release(finish[i]);
         finish[i] = 0;
     }
 }

@@ -59,8 +59,8 @@ Result compute_create(Compute *compute, const Gpu *gpu, const RendererOptions *o
 void compute_destroy(Compute *compute)
 {
     for (int i = 0; i < 2; ++i) {
-        if (compute->composite[i]) glDeleteProgram(compute->composite[i]);
-        if (compute->behind[i]) glDeleteProgram(compute->behind[i]);
+        shader_release(compute->composite[i]);
+        shader_release(compute->behind[i]);
     }
     compute_bins_destroy(&compute->bins);
     late_read_destroy(&compute->late);

@@ -66,8 +66,7 @@ void compute_bins_destroy(ComputeBins *bins)
     const GLuint programs[] = {bins->count, bins->place, bins->fill, bins->sort};
     GpuBuffer *const buffers[] = {&bins->counts, &bins->ends,  &bins->tiles,
                                   &bins->use,    &bins->pairs, &bins->sorted};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i)
-        if (programs[i]) glDeleteProgram(programs[i]);
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; ++i) shader_release(programs[i]);
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
     *bins = (ComputeBins){0};
 }

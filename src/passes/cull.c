@@ -143,10 +143,9 @@ Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part,
 void cull_destroy(Cull *cull)
 {
     GpuBuffer *const buffers[] = {&cull->listed, &cull->tally, &cull->nearest, &cull->levels};
-    for (int i = 0; i < CULL_VARIANTS; ++i)
-        if (cull->list[i]) glDeleteProgram(cull->list[i]);
-    if (cull->hide) glDeleteProgram(cull->hide);
-    if (cull->spread) glDeleteProgram(cull->spread);
+    for (int i = 0; i < CULL_VARIANTS; ++i) shader_release(cull->list[i]);
+    shader_release(cull->hide);
+    shader_release(cull->spread);
     for (int i = 0; i < 4; ++i) gpu_buffer_destroy(buffers[i]);
     *cull = (Cull){.limits = cull->limits};
 }

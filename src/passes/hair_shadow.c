@@ -69,8 +69,7 @@ static void destroy_maps(HairShadow *hair)
 
 static void destroy_programs(const GLuint *programs, int count)
 {
-    for (int i = 0; i < count; ++i)
-        if (programs[i]) glDeleteProgram(programs[i]);
+    for (int i = 0; i < count; ++i) shader_release(programs[i]);
 }
 
 void hair_shadow_destroy(HairShadow *hair)

@@ -101,6 +101,6 @@ void light_pass_destroy(LightPrograms *programs)
 {
     for (int pass = 0; pass < LIGHT_PASSES; ++pass)
         for (int variant = 0; variant < CAST_VARIANTS; ++variant)
-            if (programs->program[pass][variant]) glDeleteProgram(programs->program[pass][variant]);
+            shader_release(programs->program[pass][variant]);
     *programs = (LightPrograms){0};
 }

@@ -40,7 +40,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
 static void forget(LookPrograms *programs)
 {
     for (int i = 0; i < LOOK_VARIANTS; ++i) {
-        if (programs->program[i]) glDeleteProgram(programs->program[i]);
+        shader_release(programs->program[i]);
         programs->program[i] = 0;
     }
 }

@@ -7,7 +7,7 @@ enum { SIDE = SHADOW_MESH_SIDE };
 
 void mesh_shadow_destroy(MeshShadow *shadow)
 {
-    if (shadow->program) glDeleteProgram(shadow->program);
+    shader_release(shadow->program);
     if (shadow->depth) glDeleteTextures(1, &shadow->depth);
     if (shadow->frame) glDeleteFramebuffers(1, &shadow->frame);
     *shadow = (MeshShadow){0};

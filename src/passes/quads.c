@@ -16,7 +16,7 @@ enum { PART_PARTICLES = 1 << 19 };
 static void destroy_ribbons(QuadRibbons *hair)
 {
     look_programs_destroy(&hair->project);
-    if (hair->draw) glDeleteProgram(hair->draw);
+    shader_release(hair->draw);
     if (hair->vertex_array) glDeleteVertexArrays(1, &hair->vertex_array);
     gpu_buffer_destroy(&hair->edges);
     gpu_buffer_destroy(&hair->shades);

@@ -84,8 +84,7 @@ Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t ve
 void render_mesh_destroy(RenderMesh *mesh)
 {
     const GLuint programs[] = {mesh->surface, mesh->edges};
-    for (int i = 0; i < 2; ++i)
-        if (programs[i]) glDeleteProgram(programs[i]);
+    for (int i = 0; i < 2; ++i) shader_release(programs[i]);
     if (mesh->vertex_array) glDeleteVertexArrays(1, &mesh->vertex_array);
     gpu_buffer_destroy(&mesh->position);
     gpu_buffer_destroy(&mesh->normal);

@@ -16,7 +16,7 @@ Result carry_create(Carry *carry, const GpuLimits *limits, bool bound, Error *er
 
 void carry_destroy(Carry *carry)
 {
-    if (carry->program) glDeleteProgram(carry->program);
+    shader_release(carry->program);
     *carry = (Carry){0};
 }
 

@@ -289,7 +289,7 @@ static Result find_near(Work *work, Error *error)
     Result result = RESULT_OK;
     for (work->params.phase = 0; work->params.phase < 2; ++work->params.phase)
         THEN(result, dispatch_triangles(work, add_blocks, 0, error));
-    glDeleteProgram(program);
+    shader_release(program);
     return result;
 }
 
@@ -300,7 +300,7 @@ static Result seed(Work *work, Error *error)
     gpu_buffer_bind_storage(&work->nearest, 0);
     gpu_buffer_bind_storage(&work->closest[0], 1);
     dispatch_grid(work);
-    glDeleteProgram(program);
+    shader_release(program);
     return RESULT_OK;
 }
 
@@ -322,7 +322,7 @@ static Result flood(Work *work, Error *error)
         dispatch_grid(work);
         work->present = !work->present;
     }
-    glDeleteProgram(program);
+    shader_release(program);
     return RESULT_OK;
 }
 
@@ -332,7 +332,7 @@ static Result cross(Work *work, uint32_t axis, Error *error)
     TRY(use(work, &program, "field/field_cross.comp", error));
     gpu_buffer_bind_storage(&work->squares, 1); // reused for the crossings
     Result result = dispatch_triangles(work, add_columns, axis, error);
-    glDeleteProgram(program);
+    shader_release(program);
     return result;
 }
 
@@ -349,7 +349,7 @@ static Result sign(Work *work, uint32_t axis, Error *error)
     gpu_buffer_bind_texture(&work->closest[work->present], BIND_REST);
     glDispatchCompute(groups_of(work, size[(axis + 1) % 3]), size[(axis + 2) % 3], 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    glDeleteProgram(program);
+    shader_release(program);
     return RESULT_OK;
 }
 

@@ -97,7 +97,7 @@ Result step_pass_create(StepPass *pass, const Gpu *gpu, const char *shader,
 
 void step_pass_destroy(StepPass *pass)
 {
-    if (pass->program) glDeleteProgram(pass->program);
+    shader_release(pass->program);
     *pass = (StepPass){0};
 }
 
@@ -130,7 +130,7 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
         {"GROUP_SIZE", programs->limits->sizes.strands},
         {"STRANDS", (int)programs->strands_per_lane},
         {"IN_REGISTERS", programs->in_registers},
-        {"VERTICES", (int)(vertices - programs->leads[batch])},
+        {"VERTICES", programs->in_registers ? (int)(vertices - programs->leads[batch]) : 0},
         {"LEAD", (int)programs->leads[batch]},
         {"SHELTER", options->sheltered},
         {"STYLED", options->styled},
@@ -141,15 +141,6 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
     for (int i = 0; options->defines && options->defines[i].name; ++i)
         defines[10 + i] = options->defines[i];
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
-}
-
-// Whether batch i uses the same program as the batch before: if they have the same vertex count, or
-// if strands are kept in memory.
-static bool is_shared(const StepPrograms *programs, const Hair *hair, uint32_t i)
-{
-    return i > 0 && programs->leads[i] == programs->leads[i - 1] &&
-           (!programs->in_registers ||
-            hair->batches[i].vertex_count == hair->batches[i - 1].vertex_count);
 }
 
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
@@ -172,10 +163,7 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
     for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i) {
         // at least the tip must be free
         programs->leads[i] = hair->batches[i].vertex_count > 2 ? options->lead : 0;
-        if (is_shared(programs, hair, i))
-            programs->programs[i] = programs->programs[i - 1];
-        else
-            result = build(programs, i, hair->batches[i].vertex_count, options, error);
+        result = build(programs, i, hair->batches[i].vertex_count, options, error);
     }
     if (result != RESULT_OK) step_programs_destroy(programs);
     return result;
@@ -184,8 +172,7 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
 void step_programs_destroy(StepPrograms *programs)
 {
     for (uint32_t i = 0; programs->programs && i < programs->batch_count; ++i)
-        if (programs->programs[i] && (i == 0 || programs->programs[i] != programs->programs[i - 1]))
-            glDeleteProgram(programs->programs[i]);
+        shader_release(programs->programs[i]);
     free(programs->programs);
     free(programs->leads);
     *programs = (StepPrograms){0};

@@ -89,9 +89,9 @@ typedef struct StepProgramsOptions {
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
-// The programs of a solver: one for each batch of the hair. Similar batches share a program.
+// The programs of a solver: one for each batch of the hair.
 typedef struct StepPrograms {
-    GLuint *programs; // [batch_count]; some may be equal
+    GLuint *programs; // [batch_count]
     uint32_t *leads;  // [batch_count]: vertices after the root that the head carries
     uint32_t batch_count, strands_per_lane;
     const GpuLimits *limits; // the context's
@@ -100,9 +100,9 @@ typedef struct StepPrograms {
 } StepPrograms;
 
 // Compiles the programs with the macros GROUP_SIZE (lanes), STRANDS (per lane), IN_REGISTERS,
-// VERTICES (without the lead), LEAD, SHELTER, STYLED, VARIES, ORDERED, BOUND and the solver's own.
-// Strands are kept in registers if all are short enough and they have few different vertex counts.
-// Errors of shader_build_compute; RESULT_FAILED when memory is short.
+// VERTICES (without the lead; 0: not in registers), LEAD, SHELTER, STYLED, VARIES, ORDERED, BOUND
+// and the solver's own. Strands are kept in registers if all are short enough and they have few
+// different vertex counts. Errors of shader_build_compute; RESULT_FAILED when memory is short.
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error);
 void step_programs_destroy(StepPrograms *programs);

@@ -155,7 +155,7 @@ static void shaders_find_what_formulas_say(void **state)
     free(results);
     gpu_buffer_destroy(&in);
     gpu_buffer_destroy(&out);
-    glDeleteProgram(program);
+    shader_release(program);
     gpu_destroy(&gpu);
 }
 

@@ -28,6 +28,7 @@ static int open_gpu(void **state)
 {
     (void)state;
     NEEDED(gpu_create(&gpu, &(GpuOptions){0}, error));
+    tables.stock = gpu.tables;
     shader_add_sources(TEST_GLSL_SOURCES);
     shader_treat_warnings_as_errors(true);
     for (int lobes = LOBES_ENERGY; lobes <= LOBES_GAUSS; ++lobes) {
@@ -41,7 +42,7 @@ static int close_gpu(void **state)
 {
     (void)state;
     scatter_tables_destroy(&tables);
-    for (int i = 0; i < 2; ++i) glDeleteProgram(programs[i]);
+    for (int i = 0; i < 2; ++i) shader_release(programs[i]);
     gpu_destroy(&gpu);
     return 0;
 }
@@ -72,11 +73,11 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
     GpuBuffer in, out;
     DrawParams draw_params = {.light_count = 1};
     MaterialParams look = drawing_material(params, 1);
-    GLuint texture;
+    ScatterTable *table;
     look.color_variation = 0;
     look.warmth_variation = 0;
     NEEDED(scatter_tables_find(&tables, params->refraction, glm_rad(params->azimuthal_roughness),
-                               &texture, error));
+                               &table, error));
     NEEDED(gpu_buffer_create(&in, &gpu.limits, "pairs", count * (int64_t)sizeof *pairs, pairs, 0,
                              error));
     NEEDED(gpu_buffer_create(&out, &gpu.limits, "answers", count * (int64_t)sizeof *f, NULL, 0,
@@ -86,7 +87,7 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
     gpu_buffer_bind_storage(&in, 0);
     gpu_buffer_bind_storage(&out, 1);
     glActiveTexture(GL_TEXTURE0 + BIND_SCATTER);
-    glBindTexture(GL_TEXTURE_3D, texture);
+    glBindTexture(GL_TEXTURE_3D, scatter_table_texture(table));
     glUseProgram(programs[params->lobes]);
     glDispatchCompute((GLuint)(count + 31) / 32, 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -143,23 +144,18 @@ static void the_table_is_the_quadrature(void **state)
 {
     (void)state;
     const double roughnesses_deg[] = {5, 12, 40, 75}, etas[] = {1.55, 1.55, 1.3, 1.55};
-    size_t nodes = (size_t)SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS;
-    float(*table)[4] = malloc(nodes * sizeof *table);
-    assert_non_null(table);
     for (int r = 0; r < 4; ++r) {
-        GLuint texture;
+        ScatterTable *table;
+        FibreTable read;
         double roughness = roughnesses_deg[r] * PI / 180;
-        NEEDED(scatter_tables_find(&tables, (float)etas[r], (float)roughness, &texture, error));
-        glBindTexture(GL_TEXTURE_3D, texture);
-        glGetTexImage(GL_TEXTURE_3D, 0, GL_RGBA, GL_FLOAT, table);
-        const float(*read)[4] = (const float(*)[4])table;
-        double worst = table_error(etas[r], roughness, read, 0.02, 1),
-               along = table_error(etas[r], roughness, read, 1e-3, 0.02);
+        NEEDED(scatter_tables_find(&tables, (float)etas[r], (float)roughness, &table, error));
+        NEEDED(scatter_table_read(table, &read, error));
+        double worst = table_error(etas[r], roughness, read.values, 0.02, 1),
+               along = table_error(etas[r], roughness, read.values, 1e-3, 0.02);
         print_message("roughness %g deg, eta %g: off by %.2g at most, along the fibre %.2g\n",
                       roughnesses_deg[r], etas[r], worst, along);
         if (worst > 1e-3 || along > 1.7e-3) fail_msg("the table is off by %g, %g", worst, along);
     }
-    free(table);
 }
 
 // All beams, for light and eye at any inclination, tilted by the scales.

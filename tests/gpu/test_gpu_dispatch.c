@@ -47,7 +47,7 @@ static uint32_t *run_lanes(int most_groups, uint32_t count, uint32_t layers)
     uint32_t *read = gpu_buffer_read(&visits);
     assert_non_null(read);
     gpu_buffer_destroy(&visits);
-    glDeleteProgram(program);
+    shader_release(program);
     return read;
 }
 

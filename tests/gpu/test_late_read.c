@@ -128,7 +128,7 @@ static void what_shaders_have_stored_arrives(void **state)
     }
     late_read_destroy(&read);
     gpu_buffer_destroy(&words);
-    glDeleteProgram(program);
+    shader_release(program);
 }
 
 // Pixels from the lower left on, of a framebuffer of which each quarter has its own colour.

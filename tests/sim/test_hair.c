@@ -144,35 +144,35 @@ static void own_blocks_of_solvers_lie_alike_in_c_and_glsl(void **state)
     (void)state;
     GLuint program = build("sim/split.comp");
     SIZE(SplitParams), AT(SplitParams, pulls);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/emulation.comp");
     SIZE(EmulationParams), SPRING_AT(EmulationParams, spring), AT(EmulationParams, order_seed);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/hybrid.comp");
     SIZE(HybridParams), SPRING_AT(HybridParams, spring);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/chain.comp");
     SIZE(ChainParams), SPRING_AT(ChainParams, spring), AT(ChainParams, bend);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/tressfx.comp");
     SIZE(TressfxParams), AT(TressfxParams, local_share), AT(TressfxParams, global_share);
     AT(TressfxParams, global_range), AT(TressfxParams, shock), AT(TressfxParams, shock_threshold);
     AT(TressfxParams, most_move), AT(TressfxParams, exchanged), AT(TressfxParams, local_passes);
     AT(TressfxParams, length_passes);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/spring.comp");
     SIZE(SpringParams), AT(SpringParams, coil), AT(SpringParams, angular);
     AT(SpringParams, stretch_drawn);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/rope.comp");
     SIZE(RopeParams), SPRING_AT(RopeParams, first_spring), SPRING_AT(RopeParams, spring);
     AT(RopeParams, first_decay), AT(RopeParams, first_gain), AT(RopeParams, kept);
     AT(RopeParams, softness), AT(RopeParams, small_steps), AT(RopeParams, sweeps);
     AT(RopeParams, stretch_drawn);
-    glDeleteProgram(program);
+    shader_release(program);
     program = build("sim/dftl.comp");
     SIZE(DftlParams), SPRING_AT(DftlParams, spring), AT(DftlParams, damping);
-    glDeleteProgram(program);
+    shader_release(program);
 }
 
 static void blocks_lie_alike_in_c_and_glsl(void **state)
@@ -187,7 +187,7 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     STEP(shelter, ""), STEP(head_velocity, ""), STEP(dt, ""), STEP(decay, ""), STEP(gain, "");
     STEP(drag, ""), STEP(strand_count, ""), STEP(vertex_count, ""), STEP(phase, "");
     STEP(frame_old, ""), STEP(frame_now, "");
-    glDeleteProgram(program);
+    shader_release(program);
     const ShaderDefine pose[] = {{"GROUP_SIZE", 8}, {"MIX", 2}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/pose.comp", pose, NULL), RESULT_OK);
 #define POSE(field, suffix)                                                                        \
@@ -195,14 +195,14 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     POSE(head_rotation, ""), POSE(head_translation, ""), POSE(turn_cos, "[0]"),
         POSE(turn_sin, "[0]");
     POSE(strand_count, ""), POSE(vertex_count, ""), POSE(lead, "");
-    glDeleteProgram(program);
+    shader_release(program);
     const ShaderDefine follow[] = {{"GROUP_SIZE", 8}, {"INTERPOLATE", 1}, {"CLUMPS", 1}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/follow.comp", follow, NULL), RESULT_OK);
 #define FOLLOW(field)                                                                              \
     fixture_assert_offset(program, "FollowParams." #field, offsetof(FollowParams, field))
     FOLLOW(head_rotation), FOLLOW(tip_separation), FOLLOW(clump), FOLLOW(strand_count),
         FOLLOW(vertex_count), FOLLOW(first_guide), FOLLOW(per_guide);
-    glDeleteProgram(program);
+    shader_release(program);
     const ShaderDefine inbetween[] = {{"GROUP_SIZE", 8}, {0}};
     assert_int_equal(shader_build_compute(&program, "sim/inbetween.comp", inbetween, NULL),
                      RESULT_OK);
@@ -211,7 +211,7 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     INBETWEEN(earlier_rotation), INBETWEEN(earlier_translation), INBETWEEN(later_rotation);
     INBETWEEN(later_translation), INBETWEEN(now_rotation), INBETWEEN(now_translation);
     INBETWEEN(share), INBETWEEN(strand_count), INBETWEEN(vertex_count);
-    glDeleteProgram(program);
+    shader_release(program);
 }
 
 static void shader_errors_name_file_and_line(void **state)

@@ -236,7 +236,7 @@ float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, count * 4, shares);
     gpu_buffer_destroy(&in);
     gpu_buffer_destroy(&out);
-    glDeleteProgram(program);
+    shader_release(program);
     free(whole);
     return shares;
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Programs are built once for all who want the same, and few are kept for nobody.
+#include "gpu/gpu.h"
+#include "gpu/shader.h"
+#include "support/needed.h"
+#include "support/test_glsl.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static Gpu gpu;
+
+static int open_gpu(void **state)
+{
+    (void)state;
+    NEEDED(gpu_create(&gpu, &(GpuOptions){0}, error));
+    shader_add_sources(TEST_GLSL_SOURCES);
+    return 0;
+}
+
+static int close_gpu(void **state)
+{
+    (void)state;
+    gpu_destroy(&gpu);
+    return 0;
+}
+
+static GLuint build(int group_size)
+{
+    const ShaderDefine defines[] = {{"GROUP_SIZE", group_size}, {NULL, 0}};
+    GLuint program;
+    NEEDED(shader_build_compute(&program, "probe_lanes.comp", defines, error));
+    assert_true(glIsProgram(program));
+    return program;
+}
+
+static void the_same_files_and_macros_are_one_program(void **state)
+{
+    (void)state;
+    GLuint first = build(8), second = build(8), other = build(16);
+    assert_int_equal(first, second);
+    assert_int_not_equal(first, other);
+    shader_assume_ulps(1);
+    GLuint rounded = build(8);
+    shader_assume_ulps(0);
+    assert_int_not_equal(first, rounded);
+    shader_release(first);
+    shader_release(second);
+    assert_int_equal(build(8), first); // nobody had it
+    shader_release(first);
+    shader_release(other);
+    shader_release(rounded);
+}
+
+static uint32_t count_programs(void)
+{
+    uint32_t count = 0;
+    for (const GLuint *p = stock_next(gpu.programs, NULL); p; p = stock_next(gpu.programs, p)) {
+        assert_true(glIsProgram(*p));
+        ++count;
+    }
+    return count;
+}
+
+// However many scenes of other kinds a device has seen.
+static void few_programs_are_kept_for_nobody(void **state)
+{
+    (void)state;
+    GLuint used = build(1), gone = build(2);
+    uint32_t most = gpu.programs->most;
+    shader_release(gone);
+    for (int i = 3; i < 3 + 2 * (int)most; ++i) shader_release(build(i));
+    assert_int_equal(count_programs(), most + 1);
+    assert_true(glIsProgram(used));
+    assert_false(glIsProgram(gone));
+    assert_int_equal(build(1), used);
+    shader_release(used);
+    shader_release(used);
+    shader_release(0); // nothing
+    assert_int_equal(count_programs(), most);
+}
+
+static void what_fails_is_not_kept(void **state)
+{
+    static const ShaderDefine wrong[] = {{"GROUP_SIZE", 0}, {NULL, 0}};
+    GLuint program = 1;
+    Error error;
+    uint32_t before = count_programs();
+    (void)state;
+    for (int i = 0; i < 2; ++i) {
+        assert_int_equal(shader_build_compute(&program, "probe_lanes.comp", wrong, &error),
+                         RESULT_FAILED);
+        assert_int_equal(program, 0);
+    }
+    assert_int_equal(count_programs(), before);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_same_files_and_macros_are_one_program),
+        cmocka_unit_test(few_programs_are_kept_for_nobody),
+        cmocka_unit_test(what_fails_is_not_kept),
+    };
+    return cmocka_run_group_tests_name("shader", tests, open_gpu, close_gpu);
+}
