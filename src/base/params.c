@@ -128,9 +128,10 @@ const char *params_also(const ParamInfo *info)
 
 const ParamInfo *params_find(const char *name)
 {
+    for (size_t i = 0; i < PARAM_COUNT; i++)
+        if (names_equal(PARAM_TABLE[i].name, name)) return &PARAM_TABLE[i];
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const char *also = params_also(&PARAM_TABLE[i]);
-        if (names_equal(PARAM_TABLE[i].name, name)) return &PARAM_TABLE[i];
         if (also && names_equal(also, name)) return &PARAM_TABLE[i];
     }
     return NULL;

@@ -18,27 +18,47 @@ struct TractrixPicture {
 
 enum { CHANNELS = 4, MOST_SIDE = 16384 };
 
+// Rows between RGBA and RGB, with sizes that the compiler knows: every image goes through here.
+// Callers' channels need not lie at multiples of their size.
+#define PIXELS(type, opaque)                                                                       \
+    static void put_##type(uint8_t *to, const uint8_t *from, int width)                            \
+    {                                                                                              \
+        const type alpha = opaque;                                                                 \
+        const size_t own = 3 * sizeof(type), pixel = 4 * sizeof(type);                             \
+        for (int x = 0; x < width; ++x, to += pixel, from += own) {                                \
+            memcpy(to, from, own);                                                                 \
+            memcpy(to + own, &alpha, sizeof alpha);                                                \
+        }                                                                                          \
+    }                                                                                              \
+    static void take_##type(uint8_t *to, const uint8_t *from, int width)                           \
+    {                                                                                              \
+        const size_t own = 3 * sizeof(type), pixel = 4 * sizeof(type);                             \
+        for (int x = 0; x < width; ++x, to += own, from += pixel) memcpy(to, from, own);           \
+    }                                                                                              \
+    static bool is_opaque_##type(const uint8_t *row, int width)                                    \
+    {                                                                                              \
+        const type alpha = opaque;                                                                 \
+        bool all = true;                                                                           \
+        for (int x = 0; x < width; ++x)                                                            \
+            all &= memcmp(row + (size_t)(4 * x + 3) * sizeof alpha, &alpha, sizeof alpha) == 0;    \
+        return all;                                                                                \
+    }
+
+PIXELS(uint8_t, UINT8_MAX)
+PIXELS(uint16_t, UINT16_MAX)
+PIXELS(float, 1)
+
 static const struct {
     ImageKind kind;
     size_t channel; // bytes
+    void (*put)(uint8_t *to, const uint8_t *from, int width);
+    void (*take)(uint8_t *to, const uint8_t *from, int width);
+    bool (*is_opaque)(const uint8_t *row, int width);
 } FORMATS[] = {
-    [TRACTRIX_RGBA8] = {IMAGE_8, 1},
-    [TRACTRIX_RGBA32F] = {IMAGE_FLOAT, 4},
-    [TRACTRIX_RGBA16] = {IMAGE_16, 2},
+    [TRACTRIX_RGBA8] = {IMAGE_8, 1, put_uint8_t, take_uint8_t, is_opaque_uint8_t},
+    [TRACTRIX_RGBA32F] = {IMAGE_FLOAT, 4, put_float, take_float, is_opaque_float},
+    [TRACTRIX_RGBA16] = {IMAGE_16, 2, put_uint16_t, take_uint16_t, is_opaque_uint16_t},
 };
-
-static const struct {
-    uint8_t bytes;
-    uint16_t words;
-    float light;
-} OPAQUE = {UINT8_MAX, UINT16_MAX, 1};
-
-static const void *opaque_of(TractrixFormat format)
-{
-    return format == TRACTRIX_RGBA8    ? (const void *)&OPAQUE.bytes
-           : format == TRACTRIX_RGBA16 ? (const void *)&OPAQUE.words
-                                       : (const void *)&OPAQUE.light;
-}
 
 Result library_take_image(TractrixImage *to, const TractrixImage *image, const char *name,
                           Error *error)
@@ -59,43 +79,42 @@ Result library_take_image(TractrixImage *to, const TractrixImage *image, const c
     return to->pixels ? RESULT_OK : error_set(error, RESULT_USAGE, "%s.pixels: got NULL", name);
 }
 
+static uint8_t *row_of(const TractrixImage *image, int y)
+{
+    return (uint8_t *)image->pixels + (size_t)y * image->row_bytes;
+}
+
 void library_put_image(const TractrixImage *to, const Image *image)
 {
-    size_t channel = FORMATS[to->format].channel, pixel = CHANNELS * channel,
-           own = (size_t)image->channels * channel;
-    const uint8_t *from = image->pixels;
+    size_t size = image_size(image) / (size_t)image->height;
     for (int y = 0; y < to->height; ++y) {
-        uint8_t *row = (uint8_t *)to->pixels + (size_t)y * to->row_bytes;
-        for (int x = 0; x < to->width; ++x, from += own, row += pixel) {
-            memcpy(row, from, own);
-            if (own < pixel) memcpy(row + own, opaque_of(to->format), channel);
-        }
+        const uint8_t *from = image->pixels + (size_t)y * size;
+        if (image->channels == CHANNELS)
+            memcpy(row_of(to, y), from, size);
+        else
+            FORMATS[to->format].put(row_of(to, y), from, to->width);
     }
 }
 
 static bool is_opaque(const TractrixImage *image)
 {
-    size_t channel = FORMATS[image->format].channel, pixel = CHANNELS * channel;
-    for (int y = 0; y < image->height; ++y) {
-        const uint8_t *row = (const uint8_t *)image->pixels + (size_t)y * image->row_bytes;
-        for (int x = 0; x < image->width; ++x)
-            if (memcmp(row + (size_t)x * pixel + pixel - channel, opaque_of(image->format),
-                       channel) != 0)
-                return false;
-    }
-    return true;
+    int y = 0;
+    while (y < image->height && FORMATS[image->format].is_opaque(row_of(image, y), image->width))
+        ++y;
+    return y == image->height;
 }
 
 Result library_copy_image(Image *to, const TractrixImage *from, Error *error)
 {
-    size_t channel = FORMATS[from->format].channel, pixel = CHANNELS * channel;
     TRY(image_create_kind(to, from->width, from->height, is_opaque(from) ? 3 : CHANNELS,
                           FORMATS[from->format].kind, error));
-    size_t own = (size_t)to->channels * channel;
-    uint8_t *at = to->pixels;
+    size_t size = image_size(to) / (size_t)to->height;
     for (int y = 0; y < from->height; ++y) {
-        const uint8_t *row = (const uint8_t *)from->pixels + (size_t)y * from->row_bytes;
-        for (int x = 0; x < from->width; ++x, at += own) memcpy(at, row + (size_t)x * pixel, own);
+        uint8_t *row = to->pixels + (size_t)y * size;
+        if (to->channels == CHANNELS)
+            memcpy(row, row_of(from, y), size);
+        else
+            FORMATS[from->format].take(row, row_of(from, y), from->width);
     }
     return RESULT_OK;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/outline.h"
+
+#include "base/simd.h"
 #include "scene/axes.h"
 #include "scene/schedule.h"
 #include "strands/follow_plan.h"
@@ -29,10 +31,15 @@ static void begin_outline(Outline *outline, const float point[3])
     outline->any = true;
 }
 
-void outline_add(Outline *outline, const float point[3])
+typedef struct Points {
+    Outline *outline;
+    const float (*points)[3];
+    size_t count;
+} Points;
+
+// A loop without branches is vectorised, and most points do not extend the outline.
+SIMD_INLINE void add_point(Outline *outline, const float point[3])
 {
-    if (!outline->any) begin_outline(outline, point);
-    // A loop without branches is vectorised, and most points do not extend the outline.
     float reach[OUTLINE_DIRECTIONS];
     int farther = 0;
     const float *x = outline->direction[0], *y = outline->direction[1], *z = outline->direction[2];
@@ -50,6 +57,20 @@ void outline_add(Outline *outline, const float point[3])
     }
 }
 
+SIMD_INLINE void add_points(const Points *points, int part)
+{
+    (void)part;
+    for (size_t i = 0; i < points->count; ++i) add_point(points->outline, points->points[i]);
+}
+
+SIMD_CALL(add_points, Points)
+
+void outline_add(Outline *outline, const float (*points)[3], size_t count)
+{
+    if (!outline->any && count) begin_outline(outline, points[0]);
+    call_add_points(&(Points){outline, points, count});
+}
+
 void outline_corner(const Outline *outline, int which, float corner[3])
 {
     for (int k = 0; k < 3; ++k) corner[k] = (which >> k & 1 ? outline->high : outline->low)[k];
@@ -57,7 +78,7 @@ void outline_corner(const Outline *outline, int which, float corner[3])
 
 static void add_outline(Outline *outline, const Outline *more)
 {
-    for (int i = 0; i < OUTLINE_DIRECTIONS && more->any; ++i) outline_add(outline, more->point[i]);
+    outline_add(outline, more->point, more->any ? OUTLINE_DIRECTIONS : 0);
 }
 
 // Moves all points of the outline outwards by `by` (m).
@@ -110,9 +131,10 @@ static uint32_t strand_stride(const Strands *strands, uint32_t times)
 
 static void add_style(Outline *outline, const Strands *strands)
 {
-    for (uint32_t s = 0; s < strands->strand_count; s += strand_stride(strands, 1))
-        for (uint32_t v = strands->first[s]; v < strands->first[s + 1]; ++v)
-            outline_add(outline, strands->position[v]);
+    uint32_t stride = strand_stride(strands, 1);
+    for (uint32_t s = 0; s < strands->strand_count; s += stride)
+        outline_add(outline, (const float(*)[3])strands->position + strands->first[s],
+                    strands_size(strands, s));
 }
 
 // Adds an estimate of the strand at rest: from the root on, its directions are a mix of the
@@ -132,7 +154,7 @@ static void add_rest_strand(Outline *outline, const Strands *strands, uint32_t s
         for (int k = 0; k < 3; ++k) mixed[k] = style * segment[k] + (1 - style) * length * pull[k];
         float norm = glm_vec3_norm(mixed);
         for (int k = 0; k < 3 && norm > 0; ++k) x[k] += mixed[k] * (length / norm);
-        outline_add(outline, x);
+        outline_add(outline, (const float(*)[3]) & x, 1);
     }
 }
 
@@ -157,7 +179,7 @@ static void add_carried(Outline *outline, const Outline *still, const Moment *mo
     for (int i = 0; i < OUTLINE_DIRECTIONS && still->any; ++i) {
         vec3 carried = {0};
         carry(moment, still->point[i], carried);
-        outline_add(outline, carried);
+        outline_add(outline, (const float(*)[3]) & carried, 1);
     }
 }
 
@@ -187,14 +209,14 @@ static void outline_body(Outline *style, Outline *shape, const Scene *scene, con
                          const float (*position)[3])
 {
     const Body *body = scene->body;
-    for (uint32_t v = 0; v < body->mesh->vertex_count; ++v) outline_add(shape, position[v]);
+    outline_add(shape, position, body->mesh->vertex_count);
     for (uint32_t i = 0; i < scene->section_count; ++i)
         for (uint32_t s = 0; s < strands[i].strand_count; s += strand_stride(&strands[i], TIMES)) {
             float moved[3], at[3];
             root_moved(body, i, s, position, moved);
             for (uint32_t v = strands[i].first[s]; v < strands[i].first[s + 1]; ++v) {
                 for (int k = 0; k < 3; ++k) at[k] = strands[i].position[v][k] + moved[k];
-                outline_add(style, at);
+                outline_add(style, (const float(*)[3]) & at, 1);
             }
         }
 }
@@ -217,7 +239,7 @@ static void find_outlines(Framing *framing, const Scene *scene, const Strands *s
 {
     Outline style = {0}, body = {0};
     for (uint32_t i = 0; i < scene->section_count; ++i) add_style(&style, &strands[i]);
-    for (uint32_t v = 0; mesh && v < mesh->vertex_count; ++v) outline_add(&body, mesh->position[v]);
+    if (mesh) outline_add(&body, (const float(*)[3])mesh->position, mesh->vertex_count);
     bool moves = !rigid_track_is_still(&scene->head) || scene->gravity.count || scene->wind.count;
     double duration = schedule_frame_time(&scene->run, scene->run.frames);
     uint32_t times = moves ? TIMES : 1;

@@ -29,8 +29,8 @@ typedef struct Framing {
     float eye[3];    // m, automatic place for a camera that turns by 0
 } Framing;
 
-// Takes in a point, m.
-void outline_add(Outline *outline, const float point[3]);
+// Takes in `count` points, m.
+void outline_add(Outline *outline, const float (*points)[3], size_t count);
 
 // Corner 0..7 of the box.
 void outline_corner(const Outline *outline, int which, float corner[3]);

@@ -143,7 +143,8 @@ static double shortest_segment(const Strands *strands, uint32_t s)
         const float *a = strands->position[v - 1], *b = strands->position[v];
         double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1],
                z = (double)b[2] - (double)a[2];
-        shortest = fmin(shortest, sqrt(x * x + y * y + z * z));
+        double length = sqrt(x * x + y * y + z * z);
+        if (length < shortest) shortest = length;
     }
     return shortest;
 }

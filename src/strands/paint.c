@@ -306,8 +306,7 @@ typedef struct Silhouette {
     float low[3];
 } Silhouette;
 
-static void add_piece(Silhouette *silhouette, const double middle[3], const double way[3],
-                      double share)
+static void add_piece(Silhouette *silhouette, const double middle[3], const double fibres[3])
 {
     int at[3];
     for (int k = 0; k < 3; ++k) {
@@ -316,9 +315,16 @@ static void add_piece(Silhouette *silhouette, const double middle[3], const doub
     }
     for (int view = 0; view < 3; ++view) {
         int a = (view + 1) % 3, b = (view + 2) % 3, n = silhouette->cells;
-        double length = sqrt(way[a] * way[a] + way[b] * way[b]);
-        silhouette->fibres[view][at[a] * n + at[b]] +=
-            share * length / (silhouette->side * silhouette->side);
+        silhouette->fibres[view][at[a] * n + at[b]] += fibres[view];
+    }
+}
+
+// What a piece adds to each view.
+static void find_fibres(double fibres[3], const double way[3], double share, double side)
+{
+    for (int view = 0; view < 3; ++view) {
+        int a = (view + 1) % 3, b = (view + 2) % 3;
+        fibres[view] = share * sqrt(way[a] * way[a] + way[b] * way[b]) / (side * side);
     }
 }
 
@@ -328,15 +334,16 @@ static void add_strand(Silhouette *silhouette, const Strands *strands, uint32_t 
     uint32_t first = strands->first[s], n = strands_size(strands, s);
     for (uint32_t j = 0; j + 1 < n; ++j) {
         const float *a = strands->position[first + j], *b = strands->position[first + j + 1];
-        double way[3], middle[3], length = 0;
+        double way[3], middle[3], fibres[3], length = 0;
         for (int k = 0; k < 3; ++k) way[k] = (double)b[k] - a[k], length += way[k] * way[k];
         // The box contains every segment, so `pieces` is bounded.
         int pieces = (int)ceil(2 * sqrt(length) / silhouette->side);
         for (int k = 0; k < 3; ++k) way[k] /= pieces;
         double share = weight * (1 - (1 - TIP_RATIO) * (j + 0.5) / (n - 1));
+        find_fibres(fibres, way, share, silhouette->side);
         for (int i = 0; i < pieces; ++i) {
             for (int k = 0; k < 3; ++k) middle[k] = (double)a[k] + (i + 0.5) * way[k];
-            add_piece(silhouette, middle, way, share);
+            add_piece(silhouette, middle, fibres);
         }
     }
 }

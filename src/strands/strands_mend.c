@@ -35,7 +35,10 @@ static double nearest_apart(const Strands *strands, uint32_t begin, uint32_t end
 {
     double largest = 0.0;
     for (uint32_t v = begin; v < end; v++)
-        for (int i = 0; i < 3; i++) largest = fmax(largest, fabs((double)strands->position[v][i]));
+        for (int i = 0; i < 3; i++) {
+            double reach = fabs((double)strands->position[v][i]);
+            if (reach > largest) largest = reach;
+        }
     return fmax(NEAREST, NEAREST_SHARE * largest);
 }
 

@@ -46,7 +46,7 @@ static void open_shot(Shot *shot)
     for (int i = 0; i < POINTS; ++i) {
         float point[3];
         point_at(shot, 0, i, point);
-        outline_add(&shot->framing.all, point);
+        outline_add(&shot->framing.all, (const float(*)[3]) & point, 1);
     }
     for (int k = 0; k < 3; ++k)
         shot->framing.target[k] = 0.5f * (shot->framing.all.low[k] + shot->framing.all.high[k]);

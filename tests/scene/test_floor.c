@@ -17,8 +17,7 @@ static int open_scene(void **state)
     (void)state;
     Error error = {{0}};
     memset(&framing, 0, sizeof framing);
-    outline_add(&framing.all, (float[3]){-1, 2, 4});
-    outline_add(&framing.all, (float[3]){3, 3, 7});
+    outline_add(&framing.all, (const float[][3]){{-1, 2, 4}, {3, 3, 7}}, 2);
     return scene_create(&scene, &error) != RESULT_OK;
 }
 
