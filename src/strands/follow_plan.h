@@ -1,73 +1,79 @@
 // SPDX-License-Identifier: MIT
-// Followers: strands that are drawn but not stepped. Each takes its shape from one guide, or from
-// the three around its root. The plan says from which; glsl/sim/follow.comp does it.
+// Followers: strands that are drawn but not simulated. Each takes its shape from one guide or from
+// the three guides around its root. The plan assigns the guides; glsl/sim/follow.comp computes the
+// positions.
 #pragma once
 
 #include "base/params.h"
 #include "strands/strands.h"
 
-// One follower. Vertex j of n lies at
+// One follower. Its vertex j of n is at
 //   weight[0] a_j + weight[1] b_j + weight[2] c_j + (1 + separation j / (n - 1)) R offset
-// with the vertices of its guides a, b, c and the head's rotation R.
+// where a, b, c are the vertices of its guides and R is the head's rotation.
 typedef struct Follower {
-    uint32_t guide[3]; // places among the plan's guides; the first is the one that it belongs to
-    float weight[3];   // >= 0, their sum is 1; the first is the largest
+    uint32_t guide[3]; // indices into the plan's guides; the follower belongs to the first one
+    float weight[3];   // >= 0 with sum 1; the first is the largest
     float offset[3];   // m, in the head's frame, perpendicular to the first guide's first segment
-    uint32_t id;       // random number: what varies by strand varies with it
+    uint32_t id;       // random number, for everything that varies from strand to strand
 } Follower;
 
 typedef struct FollowOptions {
     uint32_t per_guide;
-    bool interpolate; // between guides where there are triangles; else around one guide
-    float radius; // m, > 0: of the disc around a guide's root in which its followers have theirs
+    bool interpolate; // between guides if there is a triangle of guides, otherwise around one guide
+    // m, > 0: radius of the disc around a guide's root in which the followers' roots lie.
+    float radius;
     uint32_t seed;
 } FollowOptions;
 
-// What the parameters say of the followers of these strands, or else what their file says, or else
-// (if automatic) follow_plan_fill, interpolated; and follow_plan_auto_radius.
+// The options for the followers of these strands: what the user set, otherwise what the file says,
+// otherwise (if automatic) follow_plan_fill with interpolation, and follow_plan_auto_radius.
 FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,
                                   uint32_t seed);
 
-// How many followers each of these strands gets where nobody says a number: 0 for fewer than 32
-// strands, which are wisps, and for 5,000 or more, which cover; else as many as keep the time of a
-// frame within 3 times that of the strands alone. A frame's time is about that of its segments and
-// of FRAME_SEGMENTS more; so the followers of n segments may have 2 (n + FRAME_SEGMENTS).
+// The default number of followers per strand. It is 0 for fewer than 32 strands, which are single
+// wisps, and for 5,000 or more, which cover the scalp by themselves. Otherwise it is as many as
+// keep the time of a frame within 3 times that of the strands alone. A frame takes about as long as
+// drawing its segments and FRAME_SEGMENTS more, so the followers of n segments may have 2 (n +
+// FRAME_SEGMENTS) segments.
 uint32_t follow_plan_fill(const Strands *strands);
 
-// Whether that is the number that these have: neither the user nor the file says one. Where the
-// user says how thick fibres are, the strands are all fibres that there are.
+// Whether follow_plan_fill applies: neither the user nor the file gives a number. If the user gives
+// the fibre radius, the strands are taken to be all the fibres that there are, and no followers are
+// added.
 bool follow_plan_fills(const SectionParams *params, const Strands *strands);
 
-// How far from its guide a follower may be, m; 0 if there are none. (Between three, it is within
-// their hull.)
+// The largest distance of a follower from its guide, m; 0 if there are none. (A follower between
+// three guides is within their hull.)
 float follow_plan_reach(const SectionParams *params, const Strands *strands);
 
-// follower[g * per_guide + i] is guide g's follower i.
+// follower[g * per_guide + i] is follower i of guide g.
 typedef struct FollowPlan {
     Follower *follower; // [guides * per_guide], owned
     uint32_t per_guide;
 } FollowPlan;
 
-// Plans the followers of the strands guides[0 .. count - 1], which have equal vertex counts. They
-// depend on the seed, on their guide's vertices and, with `interpolate`, on its neighbours, but not
-// on the order of the strands.
+// Plans the followers of the strands guides[0 .. count - 1], which must have equal vertex counts.
+// The result depends on the seed, the vertices of the guide and, with `interpolate`, on its
+// neighbours, but not on the order of the strands.
 //
-// Offset: roots lie evenly in a disc of the radius around the guide's, perpendicular to its first
-// segment.
+// Offset: roots are distributed uniformly in a disc of the given radius around the guide's root,
+// perpendicular to its first segment.
 //
-// Interpolate: files know no triangles between roots, so they are found: a guide and two of its 32
-// nearest neighbours, if the circle around the three, in the plane that fits the neighbourhood
-// best, holds no other of them (Delaunay). Triangles that might bridge a parting are left out:
-// those with a side of more than 6 radii, or whose strands lead to middles or tips in directions
-// more than 60 degrees apart. Followers lie evenly in that third of its triangles that is
-// nearest to the guide; a guide without triangles has its followers offset.
+// Interpolate: files contain no triangles between roots, so they are computed. A guide and two of
+// its 32 nearest neighbours form a triangle if the circle through their roots, in the plane that
+// fits the neighbourhood best, contains no other of the neighbours (Delaunay). Triangles that might
+// bridge a parting are left out: those with a side of more than 6 radii, and those whose strands
+// differ in direction by more than 60 degrees, at half their length or at the tip. Followers are
+// distributed uniformly in the third of each triangle that is nearest to the guide. The followers
+// of a guide without triangles are offset.
 //
 // RESULT_FAILED when memory is short.
 Result follow_plan_create(FollowPlan *plan, const Strands *strands, const uint32_t *guides,
                           uint32_t count, const FollowOptions *options, Error *error);
 void follow_plan_destroy(FollowPlan *plan);
 
-// A radius (m, > 0) for which discs around the roots about cover the scalp: that of a disc as large
-// as a root's share of the scalp, by the distance to its 16th neighbour in another place; the
-// median of at most 256 roots. 1/50 of the longest strand where no two roots differ.
+// The radius (m, > 0) for which discs around the roots cover about the whole scalp. For one root it
+// is the radius of a disc with the root's share of the scalp, estimated from the distance to its
+// 16th neighbour at another position; the result is the median over at most 256 roots. If all roots
+// coincide, it is 1/50 of the longest strand.
 float follow_plan_auto_radius(const Strands *strands);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The room strands: hair strands on the CPU, as files describe them: polylines from root to tip.
+// The room strands: hair strands on the CPU as files describe them, polylines from root to tip.
 //
-// It reads and writes hair files (strands_read.h, formats/format.h), mends what is wrong
-// with them and reports it, measures and edits strands, and says how they are coloured and how
-// thick they are (paint.h) and where their followers lie (follow_plan.h). It takes in files and
-// SectionParams; it hands on Strands in metres, y up, which `sim` puts on the GPU.
+// It reads and writes hair files (strands_read.h, formats/format.h), mends and reports their
+// defects, measures and edits strands, and computes their colours and radii (paint.h) and their
+// followers (follow_plan.h). Input: files and SectionParams. Output: Strands in metres, y up, which
+// `sim` uploads to the GPU.
 #pragma once
 
 #include "base/error.h"
@@ -13,61 +13,61 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Strand s has the vertices first[s] .. first[s + 1] - 1, root first. Optional arrays are NULL
-// where the source has none. Everything is owned by the struct; a zeroed struct is a valid empty
-// set.
+// Strand s has the vertices first[s] .. first[s + 1] - 1, root first. Optional arrays are NULL if
+// the source has none. The struct owns everything; a zeroed struct is a valid empty set.
 typedef struct Strands {
     uint32_t strand_count;
     uint32_t vertex_count; // of all strands together
     uint32_t *first;       // [strand_count + 1]
     float (*position)[3];  // [vertex_count], metres, y up
-    float *mobility; // [vertex_count], TressFX 4's w: > 0 may move; NULL: all but the root may
-    float (*strand_uv)[2];   // [strand_count], texture coordinate at the root, 0..1
-    float (*vertex_uv)[2];   // [vertex_count]
+    float *mobility;       // [vertex_count], TressFX 4's w, > 0 if movable; NULL: all but the roots
+    float (*strand_uv)[2]; // [strand_count], texture coordinate at the root, 0..1
+    float (*vertex_uv)[2]; // [vertex_count]
     float *strand_thickness; // [strand_count], factor or width as the file says (TressFX)
-    float *strand_group; // [strand_count], whole numbers from 0: which part of the groom it is of
+    float *strand_group;     // [vertex_count] integers from 0: group of the groom
     float *vertex_thickness; // [vertex_count], metres (HAIR files)
     float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
-    uint32_t followers;      // followers that the file asks for, per guide
-    float follower_radius;   // metres: how far from their guide; 0: the file does not say
-    bool both_ends_fixed;    // the tips do not move either
-    double unit;             // m, and axis of positions made ready for a file (strands_to_unit); 0:
-    bool up_z;               // metres, y up, which holds everywhere else
+    uint32_t followers;      // per guide, as the file asks for
+    float follower_radius;   // metres, largest distance from the guide; 0 if the file has none
+    bool both_ends_fixed;    // tips are fixed, too
+    // Unit (m) and axis of positions that were converted for a file by strands_to_unit. Otherwise
+    // unit is 0, and positions are in metres with y up.
+    double unit;
+    bool up_z;
 } Strands;
 
-// The arrays that a set may have or not, of vertices and of whole strands: X(member, numbers in an
-// element, what mends a number that is not finite).
+// The optional arrays, of vertices and of strands: X(member, numbers per element, replacement for a
+// number that is not finite).
 #define STRANDS_ARRAYS_OF_VERTICES(X)                                                              \
     X(mobility, 1, 1) X(vertex_uv, 2, 0) X(vertex_thickness, 1, 1) X(color, 4, 1)
 #define STRANDS_ARRAYS_OF_STRANDS(X)                                                               \
     X(strand_uv, 2, 0) X(strand_thickness, 1, 1) X(strand_group, 1, 0)
 
 enum {
-    STRANDS_MAX_SIZE = 65535,      // vertices of one strand that is simulated or drawn
-    STRANDS_MOST_GROUP = 16777215, // up to which float32 has all whole numbers
-    STRANDS_MAX_FOLLOWERS =
-        1000000 // that a file may ask for, per guide: every format holds as many
+    STRANDS_MAX_SIZE = 65535,       // vertices of a strand that is simulated or drawn
+    STRANDS_MOST_GROUP = 16777215,  // largest integer up to which float32 has all integers
+    STRANDS_MAX_FOLLOWERS = 1000000 // per guide, in a file; every format can store it
 };
 
-// Makes room: `first` (all zero), `position` (all zero), no optional array. RESULT_FAILED when
-// memory is short or a count is beyond what 32-bit indices hold.
+// Allocates `first` and `position` (both zeroed), but no optional array. RESULT_FAILED when memory
+// is short or a count exceeds 32-bit indices.
 Result strands_create(Strands *strands, uint32_t strand_count, uint32_t vertex_count, Error *error);
 void strands_destroy(Strands *strands);
 
-// Vertices of strand s.
+// The number of vertices of strand s.
 static inline uint32_t strands_size(const Strands *strands, uint32_t s)
 {
     return strands->first[s + 1] - strands->first[s];
 }
 
-// Length of strand s, metres: the sum of its segments.
+// The length of strand s in metres: the sum of its segments.
 double strands_length(const Strands *strands, uint32_t s);
 
-// Axis-aligned box around all vertices, metres; {0,0,0} twice for an empty set.
+// The axis-aligned bounding box of all vertices, metres; {0,0,0} twice for an empty set.
 void strands_bounds(const Strands *strands, float low[3], float high[3]);
 
-// What strands have besides positions. Only what says something counts: no texture coordinates that
-// are all zero, no mobility of 0 at roots and 1 elsewhere.
+// Data of strands besides positions. Only data with information counts: texture coordinates that
+// are all zero do not, nor a mobility of 0 at roots and 1 elsewhere.
 enum {
     STRANDS_HAS_MOBILITY = 1,
     STRANDS_HAS_STRAND_UV = 2,
@@ -81,11 +81,11 @@ enum {
     STRANDS_HAS_GROUP = 512,
 };
 
-// Whether no vertex's colour has an opacity below 1.
+// Whether no vertex has an opacity below 1.
 bool strands_are_opaque(const Strands *strands);
 
-// Those of the bits above that the strands have.
+// The features (bits above) that the strands have.
 uint32_t strands_features(const Strands *strands);
 
-// Their names with commas between them, "" for none.
+// Writes the names of the features, separated by commas; "" if there are none.
 void strands_features_describe(uint32_t features, char *text, size_t size);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Changes of strands: which ones and in what order, several sets as one, shape and place.
+// Editing strands: selecting, ordering, joining, shape and place.
 #pragma once
 
 #include "strands/strands.h"
 
-// --- Shape and place: the numbers of strands and vertices stay.
+// --- Shape and place. The numbers of strands and vertices do not change.
 
-// The root becomes the tip, with what belongs to each vertex; mobility stays at its place, since it
-// is the root that is fixed.
+// Makes the root the tip, with all vertex data except mobility, because the new root is the one
+// that must be fixed.
 void strands_reverse(Strands *strands);
 
-// Smoothing passes: in each, every vertex but root and tip goes half-way to the middle between its
-// neighbours: a binomial filter (1/4, 1/2, 1/4), after n passes close to a Gaussian of variance
-// n / 2 vertices squared. Strands become shorter by what is smoothed away.
+// Smooths the strands. In each pass, every vertex except root and tip moves half-way to the
+// midpoint of its neighbours. This is a binomial filter (1/4, 1/2, 1/4); n passes are close to a
+// Gaussian of variance n / 2 vertices squared. Strands become shorter.
 void strands_smooth(Strands *strands, uint32_t passes);
 
 // A similarity: p' = scale * rotation * p + translation.
@@ -22,44 +22,44 @@ typedef struct StrandsMove {
     double translation[3]; // metres
 } StrandsMove;
 
-// Nothing moves.
+// The identity.
 StrandsMove strands_move_none(void);
 
-// About the axis 0 (x), 1 (y) or 2 (z), degrees, counter-clockwise seen from its tip.
+// The rotation about axis 0 (x), 1 (y) or 2 (z) in degrees, counter-clockwise as seen from the tip
+// of the axis.
 StrandsMove strands_move_rotation(int axis, double angle_deg);
 
-// In double, rounded once; by no move at all bits stay. Thickness of vertices (metres) and the
-// followers' radius are scaled, too.
+// Computes in double and rounds once; the identity leaves all bits unchanged. Vertex thickness
+// (metres) and the followers' radius are scaled, too.
 void strands_move(Strands *strands, const StrandsMove *move);
 
-// To another unit and axis for writing: positions in units of `metres`, with z up (x, -z, y)
-// or y up. The inverse of what reading with that unit and axis does.
+// Converts to another unit and axis for writing: positions in units of `metres`, with z up (x, -z,
+// y) or y up. The inverse of reading with this unit and axis.
 void strands_to_unit(Strands *strands, double metres, bool up_z);
 
-// --- Which strands, and in what order.
+// --- Selecting and ordering.
 
-// Strand i < count becomes what strand which[i] was; those that are not named are gone.
+// Strand i < count becomes the former strand which[i]; strands that are not listed are removed.
 // RESULT_FAILED when memory is short; then nothing has changed.
 Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Error *error);
 
-// Keeps a random share (0 .. 1) of the strands, at least one, in their order; the same ones for the
-// same seed and number of strands. Errors as above.
+// Keeps a random share (0 .. 1) of the strands, at least one, in their order. The selection depends
+// only on the seed and the number of strands. Errors as above.
 Result strands_thin(Strands *strands, double share, uint32_t seed, Error *error);
 
-// Puts the strands in an order that depends on `seed` and their number only.
+// Puts the strands in a random order that depends only on the seed and their number.
 Result strands_shuffle(Strands *strands, uint32_t seed, Error *error);
 
-// One set behind the other. Optional arrays and what a file asks for of followers are kept if all
-// sets have them (followers: the same ones). RESULT_FAILED when memory is short or 32-bit indices
-// are.
+// Concatenates sets. Optional arrays are kept if all sets have them, the files' followers if they
+// are the same in all sets. RESULT_FAILED when memory is short or 32-bit indices do not suffice.
 Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error);
 
-// Numbers the groups of joined sets: a strand's is that of its set, from 0. With `inner` a set that
-// has groups keeps them apart, its numbers behind those of the sets before it. RESULT_FAILED when
-// memory is short, or numbers are beyond STRANDS_MOST_GROUP.
+// Numbers the groups of joined sets: a strand's group is the index of its set, from 0. With
+// `inner`, the groups within a set stay separate and are numbered after those of the sets before.
+// RESULT_FAILED when memory is short or a number exceeds STRANDS_MOST_GROUP.
 Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, bool inner,
                           Error *error);
 
-// Keeps the strands of one group, those without groups being of group 0. RESULT_BAD_INPUT, without
-// a place, where there is none.
+// Keeps the strands of one group; strands without groups are in group 0. RESULT_BAD_INPUT (without
+// a place) if there are none.
 Result strands_pick_group(Strands *strands, double group, Error *error);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// What strands_read promises of strands: that numbers are finite and within bounds, that strands
-// have 2 to STRANDS_MAX_SIZE vertices, and that no vertex coincides with the one before it.
+// The guarantees of strands_read: numbers are finite and within bounds, strands have 2 to
+// STRANDS_MAX_SIZE vertices, and no vertex coincides with the previous one.
 #pragma once
 
 #include "strands/formats/format.h"
 #include "strands/strands_report.h"
 
-// Mends what was read, in metres, in place, its frames alike, and counts in `report` what it did.
-// RESULT_BAD_INPUT for what cannot be mended: a strand that is too long, a frame with a number that
-// is not finite, too many followers; RESULT_FAILED when memory is short.
+// Mends the strands and frames that were read (in metres), in place, and counts the changes in
+// `report`. RESULT_BAD_INPUT if something cannot be mended: a strand that is too long, a frame with
+// a number that is not finite, too many followers. RESULT_FAILED when memory is short.
 Result strands_mend(FormatSource *source, const char *path, StrandsReport *report, Error *error);
 
-// Whether strands that come from no file are as strands_read leaves them. RESULT_BAD_INPUT with the
-// number of the first strand, from 0, that is not: of fewer than 2 or more than STRANDS_MAX_SIZE
-// vertices, with a number that is not finite or a coordinate beyond 1e6 m, or with a vertex that
-// coincides with the one before it.
+// Checks that strands from another source have the guarantees of strands_read. RESULT_BAD_INPUT
+// with the number (from 0) of the first strand that does not: it has fewer than 2 or more than
+// STRANDS_MAX_SIZE vertices, a number that is not finite, a coordinate beyond 1e6 m, or a vertex
+// that coincides with the previous one.
 Result strands_check(const Strands *strands, const char *name, Error *error);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Writing `.ply` (ply_file.c): hairutil's form, with its edges, which other programs draw.
+// Writes `.ply` (see ply_file.c) in hairutil's form, with edges, which other programs draw.
 #pragma once
 
 #include "base/outfile.h"
 #include "strands/strands.h"
 
-// Little-endian numbers. RESULT_FAILED if a strand has more vertices than the form can count.
+// Writes little-endian numbers. RESULT_FAILED if a strand has more vertices than the form can
+// count.
 Result ply_write(OutFile *file, const Strands *strands, Error *error);
 
-// The same as text.
+// Writes text.
 Result ply_write_text(OutFile *file, const Strands *strands, Error *error);
