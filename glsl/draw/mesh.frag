@@ -13,16 +13,16 @@
 #include "draw/ray.glsl"
 
 layout(binding = BIND_SURFACE) uniform sampler2D surface;
+layout(binding = BIND_TINT) uniform sampler2D tint;
 layout(location = 0) out vec4 color; // linear
 
-// The light that the mesh shows at x with the unit normal n, where it sees the share `open` of the
-// sky.
-vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
+// The light that the mesh, of colour `own`, shows at x with the unit normal n, where it sees the
+// share `open` of the sky.
+vec3 light_on(vec3 own, vec3 x, vec3 n, float open, vec3 to_eye)
 {
-    vec4 own = draw_params.mesh_color;
     vec3 into = vec3(lamp_around_into(open, own.r), lamp_around_into(open, own.g),
                      lamp_around_into(open, own.b)),
-         light = own.a * light_around(n) * into, highlight = vec3(0.0);
+         light = draw_params.mesh_color.a * light_around(n) * into, highlight = vec3(0.0);
 #if SHADOW
     x += shadow_params.mesh_lift * n; // avoids self-shadowing
     shadow_find_on(x, n);
@@ -39,13 +39,15 @@ vec3 light_on(vec3 x, vec3 n, float open, vec3 to_eye)
         light += reaching * max(dot(n, to_light), 0.0);
 #endif
     }
-    return own.rgb * light + highlight;
+    return own * light + highlight;
 }
 
 void main()
 {
-    vec4 seen = texelFetch(surface, ivec2(gl_FragCoord.xy), 0);
-    vec3 way = ray_through(gl_FragCoord.xy),
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 seen = texelFetch(surface, pixel, 0);
+    vec3 own = draw_params.mesh_color.rgb * texelFetch(tint, pixel, 0).rgb,
+         way = ray_through(gl_FragCoord.xy),
          n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20)),
          x = draw_params.eye.xyz + seen.w * way;
 #if SKIN
@@ -53,5 +55,5 @@ void main()
 #else
     const float open = 1.0;
 #endif
-    color = vec4(light_on(x, dot(n, way) > 0.0 ? -n : n, open, -normalize(way)), 1.0);
+    color = vec4(light_on(own, x, dot(n, way) > 0.0 ? -n : n, open, -normalize(way)), 1.0);
 }

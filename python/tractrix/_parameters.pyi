@@ -332,6 +332,9 @@ class Parameters(TypedDict, total=False):
     changed [default filmic]"""
     mesh_color: Union[Numbers, str]
     """color of the mesh, sRGB [0 to 1; default #a67f6b]"""
+    scalp_tint: float
+    """how far the color of the mesh goes towards that of the hair where roots cover it densely; 0: not at all [0 to 1;
+    default 0.8]"""
     mesh_shading: Literal["matt", "skin"]
     """surface of the mesh: matt, or skin, with a soft highlight and a soft shadow edge [default skin]"""
     background: Union[Numbers, str]

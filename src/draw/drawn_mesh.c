@@ -42,9 +42,21 @@ Result drawn_mesh_set_openness(DrawnMesh *drawn, const float *open, Error *error
     return RESULT_OK;
 }
 
+Result drawn_mesh_set_tint(DrawnMesh *drawn, const float (*tint)[3], Error *error)
+{
+    size_t size = drawn->mesh.vertex_count * sizeof *tint;
+    if (!size) return RESULT_OK;
+    if (!drawn->tint) drawn->tint = malloc(size);
+    if (!drawn->tint) return error_set(error, RESULT_FAILED, "no memory for the mesh's tint");
+    memcpy(drawn->tint, tint, size);
+    ++drawn->version;
+    return RESULT_OK;
+}
+
 void drawn_mesh_destroy(DrawnMesh *drawn)
 {
     mesh_destroy(&drawn->mesh);
     free(drawn->open);
+    free(drawn->tint);
     *drawn = (DrawnMesh){0};
 }

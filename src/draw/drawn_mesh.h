@@ -8,6 +8,7 @@
 typedef struct DrawnMesh {
     Mesh mesh;             // owned: positions, normals and triangles, in the head's frame, m
     float *open;           // [vertices], owned: the share of the sky, see openness.h; NULL: 1
+    float (*tint)[3];      // [vertices], owned: factors of the colour, see scalp_tint.h; NULL: 1
     float color[3];        // linear RGB
     float low[3], high[3]; // bounds in the head's frame, m
     uint64_t version;      // another one whenever any of this changes
@@ -16,11 +17,14 @@ typedef struct DrawnMesh {
 // Copies the mesh. RESULT_FAILED if memory is short.
 Result drawn_mesh_set(DrawnMesh *drawn, const Mesh *mesh, const float color[3], Error *error);
 
-// Moves the vertices: `moved` has the same number of vertices, and normals. The openness does not
-// change.
+// Moves the vertices: `moved` has the same number of vertices, and normals. Openness and tint do
+// not change.
 void drawn_mesh_move(DrawnMesh *drawn, const Mesh *moved);
 
 // Copies the openness of the vertices (openness.h).
 Result drawn_mesh_set_openness(DrawnMesh *drawn, const float *open, Error *error);
+
+// Copies the tint of the vertices (scalp_tint.h).
+Result drawn_mesh_set_tint(DrawnMesh *drawn, const float (*tint)[3], Error *error);
 
 void drawn_mesh_destroy(DrawnMesh *drawn);

@@ -94,6 +94,12 @@ Result renderer_set_openness(Renderer *renderer, const float *open, Error *error
     return renderer->backend->set_mesh(renderer->state, &renderer->mesh, error);
 }
 
+Result renderer_set_tint(Renderer *renderer, const float (*tint)[3], Error *error)
+{
+    TRY(drawn_mesh_set_tint(&renderer->mesh, tint, error));
+    return renderer->backend->set_mesh(renderer->state, &renderer->mesh, error);
+}
+
 int renderer_channels(const Renderer *renderer)
 {
     return renderer->options.background[3] < 1 ? 4 : 3;

@@ -50,6 +50,9 @@ void renderer_move_mesh(Renderer *renderer, const Mesh *moved);
 // it.
 Result renderer_set_openness(Renderer *renderer, const float *open, Error *error);
 
+// Sets the factors of the mesh's colour at its vertices (scalp_tint.h). Errors as above.
+Result renderer_set_tint(Renderer *renderer, const float (*tint)[3], Error *error);
+
 // The channels of images: 3, or 4 if the background is not opaque.
 int renderer_channels(const Renderer *renderer);
 

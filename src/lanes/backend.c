@@ -141,6 +141,7 @@ static PlacedMesh placed_mesh(const BackendFrame *frame)
     PlacedMesh mesh = {.position = (const float(*)[3])drawn->mesh.position,
                        .normal = (const float(*)[3])drawn->mesh.normal,
                        .open = drawn->open,
+                       .tint = (const float(*)[3])drawn->tint,
                        .triangle = (const uint32_t(*)[3])drawn->mesh.triangle,
                        .vertex_count = drawn->mesh.vertex_count,
                        .triangle_count = drawn->mesh.triangle_count};

@@ -22,6 +22,7 @@ typedef struct Lighting {
 typedef struct Points {
     float x[3][W], normal[3][W], to_eye[3][W]; // x: m; the others are unit vectors
     float open[W];                             // visible share of the sky
+    float color[3][W];                         // linear RGB, tinted
 } Points;
 
 SIMD_INLINE float dot3(const float a[3][W], const float b[3][W], int k)
@@ -43,6 +44,9 @@ SIMD_INLINE void find_points(const Lighting *lighting, int x, int y, Points *poi
         float there = surface->depth[at + (size_t)k] < 1 ? 1 : 0;
         w[k] = 1 / (surface->inverse[at + (size_t)k] * there + 1 - there);
         for (int c = 0; c < 3; ++c) normal[c][k] = w[k] * surface->normal[c][at + (size_t)k];
+        for (int c = 0; c < 3; ++c)
+            points->color[c][k] =
+                lighting->view.draw->mesh_color[c] * w[k] * surface->tint[c][at + (size_t)k];
     }
     const float(*n)[W] = (const float(*)[W])normal;
     for (int k = 0; k < W; ++k) {
@@ -86,13 +90,13 @@ SIMD_INLINE void light_points(const Lighting *lighting, const Points *points, bo
                               float light[3][W])
 {
     const DrawParams *draw = lighting->view.draw;
-    const float *color = draw->mesh_color;
+    const float(*color)[W] = points->color;
     float left[MAX_LIGHTS][W], to_light[3][W], share[W], diffuse[W], highlight[W], over[3][W];
     for (int c = 0; c < 3; ++c) {
         base_around(draw, c, points->normal, light[c]);
         for (int k = 0; k < W; ++k) {
             float open = skin ? points->open[k] : 1;
-            light[c][k] = color[3] * light[c][k] * lamp_around_into(open, color[c]);
+            light[c][k] = draw->mesh_color[3] * light[c][k] * lamp_around_into(open, color[c][k]);
             over[c][k] = 0;
         }
     }
@@ -110,7 +114,7 @@ SIMD_INLINE void light_points(const Lighting *lighting, const Points *points, bo
             }
     }
     for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < W; ++k) light[c][k] = color[c] * light[c][k] + over[c][k];
+        for (int k = 0; k < W; ++k) light[c][k] = color[c][k] * light[c][k] + over[c][k];
 }
 
 SIMD_INLINE void light_rows(const Lighting *lighting, int part)

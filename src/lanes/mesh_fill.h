@@ -12,7 +12,9 @@ enum {
     STEPS = 256, // in a px
     BAND = 16,   // rows that a thread takes at once
     PLACES = 1 + MESH_EDGES,
-    VALUES = 5 // of a vertex: depth, 1/w, normal / w
+    NORMAL = 2,
+    TINT = NORMAL + 3,
+    VALUES = TINT + 3 // of a vertex: depth, 1/w, normal / w, tint / w
 };
 
 // The places of the middle sample and of the edge samples in a pixel (1/256 px). The edge samples

@@ -16,6 +16,7 @@ typedef struct PlacedMesh {
     const float (*position)[3];    // [vertex_count], m, the mesh's frame
     const float (*normal)[3];      // [vertex_count], unit; for depths alone NULL
     const float *open;             // [vertex_count], share of the sky; NULL: 1
+    const float (*tint)[3];        // [vertex_count], factors of the colour; NULL: 1
     const uint32_t (*triangle)[3]; // [triangle_count]
     uint32_t vertex_count, triangle_count;
     float rotation[4], translation[3]; // quaternion x y z w, m: the mesh's frame -> world
@@ -24,7 +25,7 @@ typedef struct PlacedMesh {
 // Vertices on the screen, kept only as memory for the next call. A zeroed struct is empty.
 typedef struct MeshRaster {
     int (*place)[2];   // [room], owned: 1/256 px
-    float *value[5];   // [room], owned: depth, 1 over w, normal over w
+    float *value[8];   // [room], owned: depth, 1 over w, normal over w, tint over w
     unsigned char *on; // [room], owned: the planes of the view's box that a vertex is beyond
     size_t room;
 } MeshRaster;
@@ -49,8 +50,8 @@ typedef struct MeshSurface {
     float *depth;             // [height][pitch], owned like all: in middles, 1: nothing
     float *edge[MESH_EDGES];  // depths at the other samples
     // In middles where there is mesh, all over w: 1; the normal, which is as long as the share of
-    // the sky.
-    float *inverse, *normal[3];
+    // the sky; the tint.
+    float *inverse, *normal[3], *tint[3];
     float *memory; // of all these
     size_t room;
 } MeshSurface;

@@ -49,7 +49,7 @@ static Result make_room(MeshRaster *raster, size_t count, Error *error)
     return error_set(error, RESULT_FAILED, "no memory for %zu vertices of a mesh", count);
 }
 
-enum { PLANE_COUNT = PLACES + 4 }; // of a surface
+enum { PLANE_COUNT = PLACES + VALUES - 1 }; // of a surface
 
 Result mesh_surface_resize(MeshSurface *surface, int width, int height, Error *error)
 {
@@ -64,9 +64,9 @@ Result mesh_surface_resize(MeshSurface *surface, int width, int height, Error *e
         surface->room = count;
     }
     float **const planes[PLANE_COUNT] = {
-        &surface->depth,     &surface->edge[0],   &surface->edge[1],
-        &surface->edge[2],   &surface->edge[3],   &surface->inverse,
-        &surface->normal[0], &surface->normal[1], &surface->normal[2]};
+        &surface->depth,     &surface->edge[0], &surface->edge[1],   &surface->edge[2],
+        &surface->edge[3],   &surface->inverse, &surface->normal[0], &surface->normal[1],
+        &surface->normal[2], &surface->tint[0], &surface->tint[1],   &surface->tint[2]};
     for (int i = 0; i < PLANE_COUNT && surface->memory; ++i)
         *planes[i] = surface->memory + (size_t)i * plane;
     surface->width = width;
@@ -149,6 +149,11 @@ SIMD_INLINE void turn_normal(const Fill *fill, size_t v, float n[3])
     }
 }
 
+SIMD_INLINE float tint_at(const Fill *fill, size_t v, int channel)
+{
+    return fill->mesh->tint ? fill->mesh->tint[v][channel] : 1;
+}
+
 // Rounds to the nearest step of the subpixel grid.
 SIMD_INLINE int step_of(float px)
 {
@@ -172,7 +177,8 @@ SIMD_INLINE void place_vertices(const Fill *fill, int part)
         if (!fill->to.value[1]) continue;
         turn_normal(fill, v, n);
         to->value[1][v] = inverse;
-        for (int i = 0; i < 3; ++i) to->value[2 + i][v] = n[i] * inverse;
+        for (int i = 0; i < 3; ++i) to->value[NORMAL + i][v] = n[i] * inverse;
+        for (int i = 0; i < 3; ++i) to->value[TINT + i][v] = tint_at(fill, v, i) * inverse;
     }
 }
 SIMD_STAGE(place_vertices, Fill)
@@ -183,7 +189,7 @@ enum { MOST_CORNERS = 3 + PLANES };
 
 // A vertex before the perspective division.
 typedef struct Vertex {
-    float h[4], normal[3];
+    float h[4], normal[3], tint[3];
 } Vertex;
 
 // The intersection of an edge with a plane. It is always computed from the inside vertex to the
@@ -196,6 +202,8 @@ static Vertex meet(const Vertex *inside, const Vertex *outside, int plane)
     for (int i = 0; i < 4; ++i) vertex.h[i] = inside->h[i] + share * (outside->h[i] - inside->h[i]);
     for (int i = 0; i < 3; ++i)
         vertex.normal[i] = inside->normal[i] + share * (outside->normal[i] - inside->normal[i]);
+    for (int i = 0; i < 3; ++i)
+        vertex.tint[i] = inside->tint[i] + share * (outside->tint[i] - inside->tint[i]);
     return vertex;
 }
 
@@ -221,7 +229,8 @@ static Corner project(const Vertex *vertex)
     Corner corner = {.value = {vertex->h[2] * inverse, inverse}};
     for (int i = 0; i < 2; ++i)
         corner.place[i] = step_of(simd_min(simd_max(vertex->h[i] * inverse, -far), far));
-    for (int i = 0; i < 3; ++i) corner.value[2 + i] = vertex->normal[i] * inverse;
+    for (int i = 0; i < 3; ++i) corner.value[NORMAL + i] = vertex->normal[i] * inverse;
+    for (int i = 0; i < 3; ++i) corner.value[TINT + i] = vertex->tint[i] * inverse;
     return corner;
 }
 
@@ -234,6 +243,7 @@ static int cut_triangle(const Fill *fill, uint32_t t, int planes, Corner *corner
         uint32_t v = fill->mesh->triangle[t][i];
         place_vertex(&fill->matrix, fill->mesh->position[v], polygon[i].h);
         if (fill->to.value[1]) turn_normal(fill, v, polygon[i].normal);
+        for (int k = 0; k < 3; ++k) polygon[i].tint[k] = tint_at(fill, v, k);
         for (int k = 0; k < 4; ++k)
             if (!(fabsf(polygon[i].h[k]) <= 1e30f)) return 0; // broken
     }
@@ -321,7 +331,8 @@ Result mesh_raster_surface(MeshRaster *raster, const PlacedMesh *mesh, const flo
                         .depth = {surface->depth, surface->edge[0], surface->edge[1],
                                   surface->edge[2], surface->edge[3]},
                         .value = {NULL, surface->inverse, surface->normal[0], surface->normal[1],
-                                  surface->normal[2]}}};
+                                  surface->normal[2], surface->tint[0], surface->tint[1],
+                                  surface->tint[2]}}};
     TRY(make_room(raster, mesh->vertex_count, error));
     run_place_vertices(&fill, parts);
     run_fill_surface(&fill, parts);

@@ -84,6 +84,9 @@ static Result set_mesh(void *state, const DrawnMesh *mesh, Error *error)
     if (mesh->open)
         TRY(render_mesh_set_openness(mine, mesh->open, mesh->mesh.vertex_count,
                                      &passes->gpu->limits, error));
+    if (mesh->tint)
+        TRY(render_mesh_set_tint(mine, (const float(*)[3])mesh->tint, mesh->mesh.vertex_count,
+                                 &passes->gpu->limits, error));
     return make_base(passes, error);
 }
 

@@ -125,6 +125,7 @@ static void light_mesh(const BaseLayer *base, const BaseScene *scene, const Rend
     if (!base->mesh.triangle_count) return;
     scissor(target, scene->mesh_box);
     bind_texture(BIND_SURFACE, GL_TEXTURE_2D, target->surface);
+    bind_texture(BIND_TINT, GL_TEXTURE_2D, target->tint);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_GREATER);

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+enum { OPEN = 2, TINT = 3 }; // places of attributes in mesh.vert, after position and normal
+
 static void find_bounds(RenderMesh *mesh, const Mesh *source)
 {
     for (int k = 0; k < 3; ++k) {
@@ -67,17 +69,33 @@ void render_mesh_move(RenderMesh *mesh, const Mesh *moved)
     glBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)mesh->normal.size, moved->normal);
 }
 
+static void add_attribute(const RenderMesh *mesh, GLuint place, GLint width,
+                          const GpuBuffer *values)
+{
+    glBindVertexArray(mesh->vertex_array);
+    glBindBuffer(GL_ARRAY_BUFFER, values->buffer);
+    glVertexAttribPointer(place, width, GL_FLOAT, GL_FALSE, 0, NULL);
+    glEnableVertexAttribArray(place);
+    glBindVertexArray(0);
+}
+
 Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
                                 const GpuLimits *limits, Error *error)
 {
     if (!mesh->triangle_count) return RESULT_OK;
     TRY(gpu_buffer_create(&mesh->open, limits, "the sky on the mesh",
                           (int64_t)vertex_count * (int64_t)sizeof *open, open, 0, error));
-    glBindVertexArray(mesh->vertex_array);
-    glBindBuffer(GL_ARRAY_BUFFER, mesh->open.buffer);
-    glVertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, 0, NULL);
-    glEnableVertexAttribArray(2);
-    glBindVertexArray(0);
+    add_attribute(mesh, OPEN, 1, &mesh->open);
+    return RESULT_OK;
+}
+
+Result render_mesh_set_tint(RenderMesh *mesh, const float (*tint)[3], uint32_t vertex_count,
+                            const GpuLimits *limits, Error *error)
+{
+    if (!mesh->triangle_count) return RESULT_OK;
+    TRY(gpu_buffer_create(&mesh->tint, limits, "the mesh's tint",
+                          (int64_t)vertex_count * (int64_t)sizeof *tint, tint, 0, error));
+    add_attribute(mesh, TINT, 3, &mesh->tint);
     return RESULT_OK;
 }
 
@@ -90,6 +108,7 @@ void render_mesh_destroy(RenderMesh *mesh)
     gpu_buffer_destroy(&mesh->normal);
     gpu_buffer_destroy(&mesh->triangle);
     gpu_buffer_destroy(&mesh->open);
+    gpu_buffer_destroy(&mesh->tint);
     *mesh = (RenderMesh){0};
 }
 
@@ -97,7 +116,8 @@ static void draw_with(const RenderMesh *mesh, GLuint program)
 {
     glUseProgram(program);
     glBindVertexArray(mesh->vertex_array);
-    if (!mesh->open.buffer) glVertexAttrib1f(2, 1);
+    if (!mesh->open.buffer) glVertexAttrib1f(OPEN, 1);
+    if (!mesh->tint.buffer) glVertexAttrib3f(TINT, 1, 1, 1);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
 }
 

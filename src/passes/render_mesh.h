@@ -12,6 +12,7 @@ typedef struct RenderMesh {
     GLuint vertex_array;
     GpuBuffer position, normal, triangle; // float[3], float[3], uint[3]
     GpuBuffer open;                       // float, see openness.h; none: 1 everywhere
+    GpuBuffer tint;                       // float[3], see scalp_tint.h; none: 1 everywhere
     uint32_t triangle_count;              // 0: no mesh, nothing is done
     float low[3], high[3];                // bounds in the head's frame, m
 } RenderMesh;
@@ -27,6 +28,11 @@ void render_mesh_move(RenderMesh *mesh, const Mesh *moved);
 // Uploads each vertex's share of the sky (openness.h). RESULT_FAILED if memory is short.
 Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
                                 const GpuLimits *limits, Error *error);
+
+// Uploads each vertex's factors of the mesh's colour (scalp_tint.h). Errors as above.
+Result render_mesh_set_tint(RenderMesh *mesh, const float (*tint)[3], uint32_t vertex_count,
+                            const GpuLimits *limits, Error *error);
+
 void render_mesh_destroy(RenderMesh *mesh);
 
 // Draws the mesh into the target's depth, its surface (valid where there is depth) and its edges.

@@ -92,6 +92,9 @@ Result render_target_add_base(RenderTarget *target, Error *error)
     target->lit_frame = create_color_frame(target->lit, target->middle_depth);
     target->surface = create_texture(GL_RGBA32F, width, height);
     target->surface_frame = create_color_frame(target->surface, target->middle_depth);
+    target->tint = create_texture(GL_RGBA16F, width, height);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, target->tint, 0);
+    glDrawBuffers(2, (const GLenum[]){GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1});
     TRY(check_frame(target->hair_frame, "hair target", error));
     TRY(check_frame(target->base_frame, "mesh target", error));
     TRY(check_frame(target->lit_frame, "mesh light", error));
@@ -103,12 +106,12 @@ void render_target_destroy(RenderTarget *target)
 {
     const GLuint frames[] = {target->image_frame, target->hair_frame,    target->base_frame,
                              target->lit_frame,   target->surface_frame, target->edge_frame};
-    const GLuint textures[] = {target->image,       target->depth,   target->base,
-                               target->lit,         target->surface, target->edge_depth,
-                               target->middle_depth};
+    const GLuint textures[] = {target->image,        target->depth,   target->base,
+                               target->lit,          target->surface, target->edge_depth,
+                               target->middle_depth, target->tint};
     if (target->image) { // without a context no GL function may be called
         glDeleteFramebuffers(6, frames);
-        glDeleteTextures(7, textures);
+        glDeleteTextures(8, textures);
     }
     for (int i = 0; i < 2; ++i) late_read_destroy(&target->sent[i]);
     *target = (RenderTarget){0};

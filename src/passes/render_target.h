@@ -17,6 +17,7 @@ typedef struct RenderTarget {
     GLuint base, base_frame;   // RGBA16F: mesh over background, linear, premultiplied; `depth`
     GLuint middle_depth;       // the mesh's in the middles of pixels
     GLuint surface, surface_frame; // RGBA32F, glsl/draw/surface.frag; with `middle_depth`
+    GLuint tint;                   // RGBA16F, of the same
     GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `middle_depth`
     GLuint edge_depth, edge_frame; // the mesh's, EDGE_SAMPLES a sample
     ImageKind kind;

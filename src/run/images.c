@@ -2,6 +2,7 @@
 #include "run/images.h"
 #include "draw/hair_paint.h"
 #include "draw/openness.h"
+#include "draw/scalp_tint.h"
 #include "scene/camera.h"
 #include "strands/paint.h"
 
@@ -117,6 +118,51 @@ static Result open_sky(Images *images, Error *error)
     return result;
 }
 
+static Result list_scalp_hair(const Images *images, ScalpHair *hair, Paint *paints, uint32_t *count,
+                              Error *error)
+{
+    for (uint32_t i = 0; i < images->scene->section_count; ++i) {
+        const SectionParams *params = &images->scene->sections[i].params;
+        const Strands *strands = &images->assets->strands[i];
+        uint32_t followers = images->simulation->sections[i].follow.per_guide;
+        const SectionParams seen = paint_as_seen(params);
+        if (params->hidden) continue;
+        Paint *paint = &paints[*count];
+        TRY(paint_create(paint, strands, &seen, error));
+        ScalpHair *own = &hair[(*count)++];
+        *own = (ScalpHair){.strands = strands,
+                           .paint = paint,
+                           .radius = paint_radius(params, strands, followers),
+                           .each = 1 + (float)followers};
+        paint_color(&seen, own->color);
+    }
+    return RESULT_OK;
+}
+
+// Gives the scalp the tint of its roots, of the colours at the start.
+static Result tint_scalp(Images *images, Error *error)
+{
+    const Assets *assets = images->assets;
+    const RunParams *run = &images->scene->run;
+    uint32_t count = 0, sections = images->scene->section_count;
+    if (!assets->has_mesh || run->scalp_tint == 0 || run->aov != AOV_NONE) return RESULT_OK;
+    ScalpHair *hair = calloc((size_t)sections + 1, sizeof *hair);
+    Paint *paints = calloc((size_t)sections + 1, sizeof *paints);
+    float(*tint)[3] = malloc((size_t)assets->mesh.vertex_count * sizeof *tint + 1);
+    Result result = RESULT_OK;
+    if (!hair || !paints || !tint)
+        result = error_set(error, RESULT_FAILED, "no memory for the tint of the scalp");
+    THEN(result, list_scalp_hair(images, hair, paints, &count, error));
+    THEN(result, scalp_tint_find(tint, &assets->mesh, images->renderer.mesh.color, run->scalp_tint,
+                                 hair, count, error));
+    THEN(result, renderer_set_tint(&images->renderer, (const float(*)[3])tint, error));
+    for (uint32_t i = 0; paints && i < sections; ++i) paint_destroy(&paints[i]);
+    free(hair);
+    free(paints);
+    free(tint);
+    return result;
+}
+
 static Result open_one(Images *images, Renderer *renderer, const RendererOptions *options,
                        GpuTimer *timer, Error *error)
 {
@@ -161,7 +207,8 @@ static Result open_all(Images *images, const ImagesForm *form, GpuTimer *timer, 
     if (form->layers) TRY(open_layers(images, &options, timer, error));
     TRY(create_items(images, error));
     TRY(copy_body(images, error));
-    return open_sky(images, error);
+    TRY(open_sky(images, error));
+    return tint_scalp(images, error);
 }
 
 Result images_create(Images *images, const Scene *scene, const Assets *assets,

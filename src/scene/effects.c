@@ -91,7 +91,7 @@ static const struct {
     {"friction collision_margin", collides, "--no-collide"},
     {"collide_mesh", has_head, "there is no --mesh and no --scalp"},
     {"mesh_unit mesh_up sdf_resolution sdf_cache", has_mesh, "there is no --mesh"},
-    {"mesh_color mesh_shading", has_head, "there is no --mesh and no --scalp"},
+    {"mesh_color mesh_shading scalp_tint", has_head, "there is no --mesh and no --scalp"},
     {"mesh_rest mesh_fps mesh_start mesh_motion", has_sequence, "--mesh does not deform"},
     {"sdf_resolution sdf_cache", collides_mesh, "--no-collide-mesh"},
     {"rest", has_style, "--style is 0"},

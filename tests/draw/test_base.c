@@ -36,6 +36,7 @@ static const float COLOR[3] = {0.8f, 0.6f, 0.5f};
 
 static Mesh head;
 static float *open_sky; // of its vertices
+static float (*tint)[3];
 
 enum { STRANDS = 200, VERTICES = 5 };
 
@@ -97,6 +98,7 @@ static Shown draw_by_opengl(const RendererOptions *options, const float turn[4],
     Renderer *renderer = &studio.renderer;
     NEEDED(renderer_set_mesh(renderer, &head, COLOR, error));
     NEEDED(renderer_set_openness(renderer, open_sky, error));
+    NEEDED(renderer_set_tint(renderer, (const float(*)[3])tint, error));
     NEEDED(renderer_draw(renderer, &frame, studio.items, studio.count, &studio.image, error));
     const RenderTarget *target = &((const Passes *)renderer->state)->target;
     Shown shown = {.side = target->width * target->samples};
@@ -123,6 +125,7 @@ static LaneBaseScene make_scene(const float turn[4])
     LaneBaseScene scene = {.mesh = {.position = (const float(*)[3])head.position,
                                     .normal = (const float(*)[3])head.normal,
                                     .open = open_sky,
+                                    .tint = (const float(*)[3])tint,
                                     .triangle = (const uint32_t(*)[3])head.triangle,
                                     .vertex_count = head.vertex_count,
                                     .triangle_count = head.triangle_count,
@@ -335,10 +338,14 @@ int main(void)
     };
     NEEDED(head_make_mesh(&head, 6000, error));
     open_sky = malloc(head.vertex_count * sizeof *open_sky);
-    for (uint32_t v = 0; open_sky && v < head.vertex_count; ++v)
+    tint = malloc(head.vertex_count * sizeof *tint);
+    for (uint32_t v = 0; open_sky && tint && v < head.vertex_count; ++v) {
         open_sky[v] = 0.6f + 0.4f * head.normal[v][1];
-    int failed = open_sky ? stage_run_one(tests, RASTER_QUADS) : 1;
+        for (int k = 0; k < 3; ++k) tint[v][k] = 1 + 0.3f * (float)(k - 1) * head.normal[v][0];
+    }
+    int failed = open_sky && tint ? stage_run_one(tests, RASTER_QUADS) : 1;
     mesh_destroy(&head);
     free(open_sky);
+    free(tint);
     return failed;
 }
