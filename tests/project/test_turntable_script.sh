@@ -26,9 +26,26 @@ if command -v ffprobe >/dev/null; then
     run 0 assets/fur.tfx mp4 webm gif -- $small --size 65x49
     stream fur.mp4 h264,66,50,yuv420p,15
     stream fur.webm vp9,65,49,yuv420p,15
-    stream fur.gif gif,65,49,bgra,8
+    stream fur.gif gif,66,50,bgra,8 # as the first video
 else
     skip "ffprobe is not installed"
+fi
+
+claim "frames are drawn once: gif and sheet are made of them, the sheet with the same tiles as tractrix-render's"
+if command -v ffmpeg >/dev/null; then
+    mkdir "$work/counted"
+    printf '#!/bin/sh\necho "$*" >>"%s/runs"\nexec "%s/tractrix-render" "$@"\n' "$work" "$bin" >"$work/counted/tractrix-render"
+    chmod +x "$work/counted/tractrix-render"
+    # shellcheck disable=SC2086
+    TRACTRIX_BIN="$work/counted" run 0 assets/fur.tfx sheet gif frames -o "$work/once" $small --fps 20 -s 1 -q
+    if [ "$(grep -c -- '--from-cache' "$work/runs")" = 1 ]; then good; else bad "frames were drawn more than once"; fi
+    # shellcheck disable=SC2086
+    run 0 assets/fur.tfx sheet -o "$work/alone" $small --fps 20 -s 1 -q
+    holds "$bin/tractrix-compare" "$work/alone/fur_sheet.png" "$work/once/fur_sheet.png" --pixel-tolerance 0
+    turns=$work/once stream fur.gif gif,64,48,bgra,15
+    if [ "$(find "$work/once" | wc -l)" = 34 ]; then good; else bad "other files than 30 frames, a sheet and an animation are left"; fi
+else
+    skip "ffmpeg is not installed"
 fi
 
 claim "--help and --version are answered, wherever it stands and whatever may be written"
