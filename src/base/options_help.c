@@ -335,6 +335,20 @@ static void put_markdown(FILE *stream, const OptionsProgram *program)
 
 // --- Topics.
 
+// Returns the topic whose description has a word like this one, or NULL.
+static const char *find_by_text(const OptionsProgram *program, const char *word)
+{
+    enum { SHORTEST = 4 }; // letters: "and" describes nothing
+    for (const char *const(*t)[2] = program->topics; t && (*t)[0]; ++t) {
+        char text[LIST_SIZE], *rest = NULL;
+        snprintf(text, sizeof text, "%s", (*t)[1] ? (*t)[1] : "");
+        for (char *is = strtok_r(text, " ,", &rest); is; is = strtok_r(NULL, " ,", &rest))
+            if (strlen(is) >= SHORTEST && suggest_nearest(word, (const char *[]){is}, 1))
+                return (*t)[0];
+    }
+    return NULL;
+}
+
 // Finds the topic or option that the user may have meant, spelled as he writes it; "" if there is
 // none.
 static void find_near(const OptionsProgram *program, const char *topic, char near[80])
@@ -349,6 +363,7 @@ static void find_near(const OptionsProgram *program, const char *topic, char nea
     for (size_t i = 0; i < program->option_count && count < MOST; ++i)
         names[count++] = program->options[i].name;
     const char *found = suggest_nearest(topic, names, count);
+    if (!found) found = find_by_text(program, topic);
     snprintf(near, 80, "%s", found ? found : "");
     for (char *at = near; *at; ++at) *at = *at == '_' ? '-' : *at;
 }

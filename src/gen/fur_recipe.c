@@ -68,80 +68,93 @@ static const Option OPTIONS[] = {
     {"per-cm2", 0, OPTION_REAL, AT(per_cm2), "N", 1e-6, 1e6,
      "strands per square centimetre where the density is 1, instead of --count"},
     {"density", 0, OPTION_STRING, AT(density), "MAP", 0, 0,
-     "relative density of the strands; 0: none"},
+     "how densely hair grows, relative to other places; 0: not at all"},
     {"root-lift", 0, OPTION_REAL, AT(root_lift), "M", 1e-6, 1,
-     "height of the roots above the surface, and minimum height of all other vertices [default "
-     "0.0001]"},
+     "height at which roots lie above the surface; no other vertex comes nearer to it "
+     "[default 0.0001]"},
     {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 1024, "vertices per strand [default 16]"},
     // Form.
     {"length", 0, OPTION_REAL, AT(length), "M", 1e-4, 100,
      "length of the longest strand [default 0.03]"},
     {"length-variation", 0, OPTION_REAL, AT(length_variation), "SHARE", 0, 0.99,
-     "strands are randomly shorter, by up to this share [default 0.3]"},
-    {"length-map", 0, OPTION_STRING, AT(length_map), "MAP", 0, 0, "factor of the length, 0 to 1"},
+     "each strand is shortened by a random share of its length, at most this [default 0.3]"},
+    {"length-map", 0, OPTION_STRING, AT(length_map), "MAP", 0, 0,
+     "factor of --length at each place, 0 to 1"},
     {"comb", 0, OPTION_STRING, AT(comb), "X,Y,Z|PNG", 0, 0,
-     "direction in which hair is combed, each coordinate a number or a formula; it is projected "
-     "onto the surface. Of an image, red is the direction along u, green along v"},
+     "direction in which hair is combed: three numbers or formulas, of which the part along the "
+     "surface counts; or an image, whose red is the direction along u and green along v"},
     {"lift", 0, OPTION_REAL, AT(lift_deg), "DEG", 0, 90,
-     "angle between combed hair and the surface at the root [default 45]"},
+     "angle between hair and surface at the root [default 45]"},
     {"lie", 0, OPTION_REAL, AT(lie), "M", 0, 100,
-     "distance over which hair bends down to lie on the surface, following the combed direction of "
-     "each place; 0: it keeps its direction [default 0]"},
+     "distance along the strand over which hair turns into the direction of --comb at each place "
+     "and down onto the surface; 0: the comb acts at the root only [default 0]"},
     {"comb-reach", 0, OPTION_REAL, AT(comb_reach), "M", 0, 100,
-     "distance from the root over which --lie acts; 0: the whole strand [default 0]"},
+     "part of the strand, from the root, on which --lie acts; 0: all of it [default 0]"},
     {"gravity-bend", 0, OPTION_REAL, AT(gravity_bend), "RAD/M", 0, 10000,
-     "bend of horizontal hair by its weight [default 10]"},
+     "how much hair bends down by its weight where it is horizontal [default 10]"},
     {"volume", 0, OPTION_REAL, AT(volume), "M", 0, 1,
-     "distance that hair keeps from the surface, far from its root [default 0]"},
+     "height above the surface that hair keeps, except near its root [default 0]"},
     {"noise", 0, OPTION_REAL, AT(noise), "X", 0, 10,
-     "how much the direction varies along the strand, alike for neighbours: 0.3 a little, 1 "
-     "strongly [default 0]"},
+     "random bends along the strands, nearly the same for neighbours: 0.3 slight, 1 strong "
+     "[default 0]"},
     {"noise-size", 0, OPTION_REAL, AT(noise_size), "M", 1e-4, 10,
-     "size of the regions that --noise moves alike [default 0.02]"},
+     "distance over which the bends of --noise change; a smaller one also bends hair more sharply "
+     "[default 0.02]"},
     {"scatter", 0, OPTION_REAL, AT(scatter), "X", 0, 10,
-     "random variation of each strand's direction at the root [default 0]"},
+     "how much the strands' directions at the root differ by chance [default 0]"},
     // Guides.
     {"guides", 0, OPTION_WHOLE, AT(guides), "N", 1, 2e6,
-     "grow only this many strands and interpolate the others between them, which is faster and "
-     "smoother; without it all are grown"},
+     "grow this many strands over the surface and interpolate the others between them: faster and "
+     "smoother [default: all strands are grown]"},
     {"clumps", 0, OPTION_WHOLE, AT(clumps), "N", 1, 2e6,
-     "number of guides that the other strands gather around [default: all]"},
+     "number of clumps, each around a guide [default: one for every guide]"},
     {"clump", 0, OPTION_REAL, AT(clump), "SHARE", 0, 1,
-     "share of the way to its guide that a tip is pulled [default 0]"},
-    {"clump-root", 0, OPTION_REAL, AT(clump_root), "SHARE", 0, 1, "the same for roots [default 0]"},
+     "how far tips are pulled to the guide of their clump, as a share of the distance "
+     "[default 0]"},
+    {"clump-root", 0, OPTION_REAL, AT(clump_root), "SHARE", 0, 1,
+     "how far roots are pulled to it [default 0]"},
     {"clump-profile", 0, OPTION_REAL, AT(clump_profile), "X", 0.01, 0.99,
-     "where between root and tip strands come together: below 0.5 late, above early [default 0.5]"},
+     "where the strands of a clump come together: below 0.5 near the tip, above near the root "
+     "[default 0.5]"},
     // Curls, disorder.
     {"curl-radius", 0, OPTION_REAL, AT(curl_radius), "M", 0, 1, "radius of curls [default 0]"},
     {"curl-frequency", 0, OPTION_REAL, AT(curl_frequency), "N", 0.01, 100000,
      "turns of curls per metre [default 40]"},
     {"curl-disorder", 0, OPTION_REAL, AT(curl_disorder), "SHARE", 0, 1,
-     "0: strands of a clump wind in phase, 1: each has its own phase [default 0.2]"},
+     "0: the strands of a clump curl side by side; 1: each begins its curl at a random angle "
+     "[default 0.2]"},
     {"frizz", 0, OPTION_REAL, AT(frizz), "M", 0, 1,
-     "amplitude of each strand's own waves, at the tip [default 0]"},
+     "size of small waves at the tip, other ones for each strand [default 0]"},
     {"frizz-frequency", 0, OPTION_REAL, AT(frizz_frequency), "N", 0.01, 100000,
      "waves of --frizz per metre [default 60]"},
     {"flyaways", 0, OPTION_REAL, AT(flyaways), "SHARE", 0, 1,
-     "share of strands that hardly clump and have three times as much frizz [default 0]"},
+     "share of strands that stand off: they hardly clump and have three times the frizz "
+     "[default 0]"},
     // Other.
     {"followers", 0, OPTION_WHOLE, AT(followers), "N", 1, 1000,
-     "followers per strand that the file asks the renderer to draw, in formats that store it"},
+     "followers that the renderer adds to each strand; only some formats store this"},
     {"thickness", 0, OPTION_REAL, AT(thickness), "M", 1e-7, 1,
-     "thickness of hair at the root, written per vertex, in formats that store it"},
+     "thickness of hair at the root; only some formats store this"},
     {"tip-thickness", 0, OPTION_REAL, AT(tip_thickness), "SHARE", 0, 1,
      "thickness at the tip, as a share of that at the root [default 0.3]"},
 };
 
 static const char *const NOTES[] = {
-    "Lengths are metres. A MAP is a number, a PNG file, or a formula. A PNG file is placed by the "
-    "mesh's texture coordinates; black is 0, white 1. A formula is of the position x, y, z, the "
-    "normal nx, ny, nz and the texture coordinates u, v: + - * / ^, comparisons, a ? b : c, the "
-    "functions of muParser (sqrt, abs, min, max, sin ...), smoothstep(a, b, x) and noise(x, y, z), "
-    "which is between -1 and 1 and changes over distances of 1.",
-    "Hair that would grow through the mesh is bent out of it. Where parts of the mesh overlap, use "
-    "--density to grow hair on one of them, or roots lie inside the other part.",
-    "The same seed gives the same bytes on every machine, unless formulas use functions of "
-    "muParser other than sqrt, abs, min and max.",
+    "Lengths are in metres. M stands for a length, MAP for a number, a PNG file or a formula, "
+    "whose "
+    "value may be another one at each place of the mesh. A PNG file is placed by the mesh's "
+    "texture "
+    "coordinates; black is 0, white is 1.",
+    "A formula may use the position x, y, z, the normal nx, ny, nz, the texture coordinates u, v, "
+    "the operators + - * / ^, comparisons, a ? b : c, and the functions of muParser (sqrt, abs, "
+    "min, max, sin ...). smoothstep(a, b, x) rises from 0 at x = a to 1 at x = b. noise(x, y, z) "
+    "is "
+    "a random number between -1 and 1 that changes smoothly over distances of 1, so "
+    "noise(x/0.03, y/0.03, z/0.03) changes over 3 cm.",
+    "Hair that would grow through the mesh is bent out of it. Where two parts of the mesh overlap, "
+    "roots of one may lie inside the other: exclude them by --density.",
+    "The same seed gives the same bytes on every machine, if formulas use no functions but "
+    "smoothstep, noise, sqrt, abs, min and max.",
     NULL};
 
 static const char *const STATUS[][2] = {{"0", "done"},

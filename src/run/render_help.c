@@ -264,10 +264,11 @@ Result render_help(const char *topic, FILE *stream, Error *error)
     const OptionsChapter colors = {
         .topic = "colors",
         .title = "Colors",
-        .text = "Options and keys that take a color also take these names. Values are sRGB. "
-                "--color and --tip-color take a name's color of hair: what a whole head of hair "
-                "shows in light. All others, --transmission too, take that of CSS, if the name has "
-                "one.",
+        .text =
+            "Every option and key that takes a color also takes one of these names. They stand "
+            "for the sRGB values beside them. Where a name has two values, the second (of hair) "
+            "holds for --color and --tip-color: it is what a whole head of such hair shows in "
+            "light. The first, that of CSS, holds for all other colors, --transmission too.",
         .entries = (const char *const(*)[3])texts->colors,
     };
     const OptionsProgram program = {

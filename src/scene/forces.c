@@ -12,8 +12,9 @@ static bool blows(const Scene *scene)
     return scene->wind.count > 0 || w[0] != 0 || w[1] != 0 || w[2] != 0;
 }
 
-// Three sines with incommensurable periods, so that gusts do not repeat soon. The weights add up to
-// 1. With gust_repeat, each sine gets the nearest whole number of periods in that time.
+// Three sines whose common period is 100 times the first one's, run.gust_period, so that gusts do
+// not repeat soon. The weights add up to 1. With run.gust_repeat each rate is moved to the nearest
+// one that has a whole number of periods in that time.
 static double gust_at(const RunParams *run, double time)
 {
     static const struct {

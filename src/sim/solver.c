@@ -537,7 +537,9 @@ static void print_flags(FILE *stream, const char *name)
 void solver_print_list(FILE *stream)
 {
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type) {
-        fprintf(stream, "%-10s %s\n", (*type)->name, (*type)->summary);
+        bool chosen = strcmp((*type)->name, params_find("algo")->default_text) == 0;
+        fprintf(stream, "%-10s %s%s\n", (*type)->name, chosen ? "(default) " : "",
+                (*type)->summary);
         fprintf(stream, "           lengths: %s; style: %s\n",
                 (*type)->lengths ? (*type)->lengths : "-",
                 (*type)->style ? (*type)->style : "not kept");

@@ -32,9 +32,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_CHAIN = {
     .name = "chain",
-    .summary =
-        "rigid segments by direct solves with implicit tension, second order in the step; curls "
-        "keep their form by --chain-bend",
+    .summary = "every particle is simulated, a direct solve keeps the lengths; second order in the "
+               "step; curls keep their form by --chain-bend",
     .lengths = "exact",
     .style = "position springs, bending: --style, --style-stiffness, --chain-bend",
     .most_stability = 3.2f,

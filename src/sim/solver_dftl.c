@@ -32,8 +32,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_DFTL = {
     .name = "dftl",
-    .summary = "dynamic follow-the-leader (Mueller et al. 2012): lengths exact in one pass, "
-               "strongly damped",
+    .summary = "dynamic follow-the-leader (Mueller et al. 2012): one pass from root to tip keeps "
+               "the lengths; strongly damped",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"steady", "mueller"},

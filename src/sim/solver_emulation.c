@@ -65,9 +65,8 @@ static const char *caution(const SectionParams *params)
 
 const SolverType SOLVER_EMULATION = {
     .name = "emulation",
-    .summary =
-        "every particle pulls the strand along as tractrices, O(n^2), second order; thesis: as "
-        "published, unstable without much drag",
+    .summary = "every particle pulls the strand behind it (tractrices); time grows with the square "
+               "of their number; variant thesis: as published, unstable without much drag",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"projected", "thesis"},

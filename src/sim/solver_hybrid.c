@@ -22,8 +22,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_HYBRID = {
     .name = "hybrid",
-    .summary = "tractrices as length constraint in two passes about an implicit midpoint rule: "
-               "second order, energy never rises",
+    .summary = "every particle is simulated, two passes of tractrices keep the lengths; second "
+               "order in the step, never gains energy",
     .lengths = "exact",
     .style = "position springs, --style, --style-stiffness",
     // It stays calm at any value, but accuracy suffers: 32 particles at 60 Hz (3.2) are off by 0.25

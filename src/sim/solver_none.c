@@ -3,7 +3,7 @@
 
 const SolverType SOLVER_NONE = {
     .name = "none",
-    .summary = "hair stiff in its style, carried by the head",
+    .summary = "no simulation: hair keeps the shape that the file has, and moves with the head",
     .lengths = "exact",
     .style = "rigid",
 };

@@ -79,7 +79,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_ROPE = {
     .name = "rope",
-    .summary = "position-based rope as in Bullet's soft bodies, or XPBD by small steps",
+    .summary = "position-based dynamics as in Bullet's soft bodies; variant xpbd: small steps "
+               "instead of many passes",
     .lengths = "within what its iterations allow; drawn exactly",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"bullet", "xpbd"},

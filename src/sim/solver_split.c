@@ -47,7 +47,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_SPLIT = {
     .name = "split",
-    .summary = "the tip is simulated, the strand follows it as tractrices, the style is blended in",
+    .summary = "only the tip is simulated, the strand trails behind it (tractrices); cheap, "
+               "without waves along the strand",
     .lengths = "exact",
     .style = "mixed into what is drawn, --style",
     .variants = {"ball", "dragged", "thesis"},

@@ -99,7 +99,8 @@ static const SolverRecipe EXPLICIT = {
 
 const SolverType SOLVER_SPRING = {
     .name = "spring",
-    .summary = "mass-spring: coil springs along the links, angular springs towards the style",
+    .summary =
+        "mass-spring system: stiff springs along the segments, angular springs towards the style",
     .lengths = "within what its stiffness allows; drawn exactly",
     .style = "angular springs, --style, --spring-angular",
     .variants = {"implicit", "explicit"},

@@ -131,8 +131,8 @@ static const SolverRecipe RECIPE = {
 
 const SolverType SOLVER_TRESSFX = {
     .name = "tressfx",
-    .summary = "TressFX's constraints: local and global shape keep the style; fast moves of "
-               "the head carry whole strands along",
+    .summary = "AMD's TressFX: constraints pull vertices and bends to the style; fast moves of the "
+               "head carry whole strands along",
     .lengths = "exact; tressfx4: stretch",
     .style = "local and global shape, --style, its own flags",
     .variants = {"steady", "tressfx4"},
