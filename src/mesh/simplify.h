@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A mesh of fewer triangles.
+// Reduces the number of triangles of a mesh.
 #pragma once
 
 #include "base/double3.h"
 #include "mesh/mesh.h"
 
-// Merges the ends of edges, those first that change the surface least, until `triangle_count` are
-// left or none can be merged without a fold or a hole (Garland and Heckbert 1997, "Surface
-// simplification using quadric error metrics"). `weight` says how much a change counts at a place,
-// squared distances being multiplied by it; NULL: 1 everywhere. Takes a closed mesh without texture
-// coordinates; computes normals anew. Equal meshes give equal ones. RESULT_FAILED when memory is
-// short.
+// Collapses edges, in the order of least change of the surface, until `triangle_count` triangles
+// are left or no edge can be collapsed without a fold or a hole (Garland and Heckbert 1997,
+// "Surface simplification using quadric error metrics"). `weight` is a factor of squared distances
+// that depends on the place; NULL: 1 everywhere. The mesh must be closed and have no texture
+// coordinates; normals are recomputed. Deterministic. RESULT_FAILED when memory is short.
 Result simplify_mesh(Mesh *mesh, uint32_t triangle_count, double (*weight)(const Double3 at),
                      Error *error);

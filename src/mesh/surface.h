@@ -13,45 +13,45 @@ typedef struct Surface {
     const Mesh *mesh;   // not owned
     uint32_t *triangle; // [triangle_count], those with an area, in the tree's order
     uint32_t triangle_count;
-    uint32_t flat_count; // triangles without an area, which are passed over
-    double area;         // of all together, m2
-    SurfaceNode *nodes;  // a tree of boxes
-    // Not of unit length: of the edge behind each corner, [mesh's triangles], and of the vertices,
-    // weighted by angle, [mesh's vertices].
+    uint32_t flat_count; // triangles without an area, which are skipped
+    double area;         // m2, of all triangles
+    SurfaceNode *nodes;  // a tree of bounding boxes
+    // Not of unit length: normals of the edge after each corner, [mesh's triangles], and of the
+    // vertices, weighted by angle, [mesh's vertices].
     double (*edge_normal)[3][3];
     double (*corner_normal)[3];
 } Surface;
 
 typedef struct SurfacePoint {
-    uint32_t triangle; // of the mesh
-    Double3 weight;    // of its corners, sum 1
+    uint32_t triangle; // index in the mesh
+    Double3 weight;    // of its corners, with sum 1
     Double3 place;
 } SurfacePoint;
 
-// RESULT_BAD_INPUT, with `name` (the file's) in front, if no triangle has an area; RESULT_FAILED
-// when memory is short. The mesh outlives the surface.
+// RESULT_BAD_INPUT, prefixed with `name` (the mesh's file), if no triangle has an area;
+// RESULT_FAILED when memory is short. The mesh must outlive the surface.
 Result surface_create(Surface *surface, const Mesh *mesh, const char *name, Error *error);
 void surface_destroy(Surface *surface);
 
-// Twice the area of a triangle of the mesh, and its unit normal ({0, 0, 0} where that is 0).
+// Returns twice the area of a triangle of the mesh and sets its unit normal ({0, 0, 0} if the area
+// is 0).
 double surface_triangle(const Mesh *mesh, uint32_t triangle, Double3 normal);
 
 // The point of a triangle with these weights.
 SurfacePoint surface_at(const Surface *surface, uint32_t triangle, const Double3 weight);
 
-// The vertices' normals at a point; unit length.
+// The interpolated unit normal of the vertices at a point.
 void surface_normal(const Surface *surface, const SurfacePoint *point, Double3 normal);
 
-// Texture coordinate at a point; false if a corner of its triangle has none.
+// Texture coordinates at a point; false if a corner of its triangle has none.
 bool surface_uv(const Surface *surface, const SurfacePoint *point, double uv[2]);
 
-// The directions in which u and v grow there, of unit length; false if texture coordinates say
-// none.
+// The unit directions in which u and v increase; false if texture coordinates do not define them.
 bool surface_uv_axes(const Surface *surface, const SurfacePoint *point, Double3 u, Double3 v);
 
-// The surface's point nearest to `from`; returns how far it is, negative inside, as the normal of
-// the face, edge or corner there says (Baerentzen and Aanaes 2005, "Signed distance computation
-// using the angle weighted pseudonormal"), which is right wherever the surface is closed and does
-// not cross itself. A triangle in *nearest that is near makes it quicker: it holds one of the
-// mesh's.
+// The nearest point of the surface to `from`; returns its signed distance, negative inside. The
+// sign comes from the normal of the face, edge or corner (Baerentzen and Aanaes 2005, "Signed
+// distance computation using the angle weighted pseudonormal"), which is correct wherever the
+// surface is closed and does not intersect itself. On input, *nearest must hold a triangle of the
+// mesh; a near one speeds up the search.
 double surface_nearest(const Surface *surface, const Double3 from, SurfacePoint *nearest);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene's files: hair of all sections, the mesh, and the light from around.
+// The files of a scene: hair of all sections, the mesh and the environment image.
 #pragma once
 
 #include "mesh/mesh.h"
@@ -11,21 +11,20 @@ typedef struct Assets {
     uint32_t section_count;
     Strands *strands;       // [section_count]
     StrandsReport *reports; // [section_count]
-    Mesh mesh;              // empty if the scene has none; of a sequence: at time 0
+    Mesh mesh;              // empty if there is none; of a sequence: the mesh at time 0
     bool has_mesh;
-    Environment environment; // empty if the scene has none
-    Body *body;              // of a mesh that deforms, owned; NULL: none
+    Environment environment; // empty if there is none
+    Body *body;              // the deforming mesh, owned; NULL if there is none
 } Assets;
 
-// Reads everything that the scene names. A mesh that deforms moves the scene's head
-// (scene->head.samples) and is its body, as long as the assets are there; strands lie on it as at
-// time 0. What was mended, and units that were guessed (if
-// `verbose`), are printed on `messages` (NULL: not). Errors as strands_read and mesh_read give
-// them; the assets may be destroyed in each case.
+// Reads all files that the scene names. A deforming mesh becomes the scene's body and moves its
+// head (scene->head.samples) as long as the assets exist; strands lie on it as at time 0. Prints
+// what was mended and, if `verbose`, guessed units on `messages` (NULL: does not print). Errors of
+// strands_read and mesh_read; the assets may be destroyed after an error.
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);
 
-// --check: reads every section's file and prints its report, or why it can't be read, on `stream`.
-// RESULT_OK if all are clean, RESULT_FAILED if any has defects, RESULT_BAD_INPUT if any can't be
-// read; everything is printed, `error` is not needed.
+// Implements --check: reads the file of every section and prints its report, or the reason why it
+// cannot be read, on `stream`. RESULT_OK if all are clean, RESULT_FAILED if any has defects,
+// RESULT_BAD_INPUT if any cannot be read. Everything is printed, so there is no `error`.
 Result assets_check(const Scene *scene, FILE *stream);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A head that goes where somebody says, frame by frame, instead of along the scene's track.
+// A head that the caller moves frame by frame, instead of the scene's track.
 #pragma once
 
 #include "scene/scene.h"
 
 // Zeroed: the scene's track moves the head.
 typedef struct DrivenHead {
-    RigidMotion motion[2]; // at the beginning and at the end of the frame that is on
-    RigidSamples samples;  // of them
+    RigidMotion motion[2]; // at the start and at the end of the current frame
+    RigidSamples samples;  // made of `motion`
 } DrivenHead;
 
-// Goes on: the head is at `to` at the time `after` (s), and gets there evenly from where it is at
-// `before`: a screw motion. From the first time on the scene's head is this one, which stays where
-// it is.
+// The head is at `to` at time `after` (s) and moves there evenly, by a screw motion, from where it
+// is at time `before`. From the first call on, this replaces the scene's track; afterwards the head
+// stays where it is.
 void driven_head_move(DrivenHead *head, Scene *scene, const RigidMotion *to, double before,
                       double after);

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The camera that fills its frames: the nearest one that sees all points of all frames, found
-// from the points themselves.
+// Finds the nearest camera that sees all points of all frames, from the points themselves.
 //
-// A camera at target + d back looks along -back and sees a point p within `scale` (above 1) times
-// the slope s of a side of its frame, given by the vector `side` (right, left, top or bottom), if
+// A camera at target + d back looks along -back. Let `side` be the direction of one side of its
+// frame (right, left, top or bottom) and s the slope of that side. A point p is within the side,
+// with a margin `scale` (above 1), if
 //     scale side . (p - target) <= s (d - back . (p - target)),
-// so if d >= n . (p - target) with n = back + scale / s side. Four such n belong to a frame, and
-// of all its points only the greatest n . p counts: d is the largest of greatest - n . target.
-// That is convex in the target, so nested searches find the best one.
+// that is, if d >= n . (p - target) with n = back + scale / s side. Each frame has four such n, and
+// only the greatest n . p of all its points matters: d is the largest of (greatest n . p) - n .
+// target. This is convex in the target, so nested searches find the best target.
 #pragma once
 
 #include "scene/outline.h"
 
 typedef struct FitSide {
     float normal[3]; // n
-    float widening;  // of n . p by a point's own radius of 1: scale / s
-    float reach;     // m, greatest n . p; -infinity: no points yet
+    float widening;  // increase of n . p for a point with radius 1: scale / s
+    float reach;     // m, greatest n . p; -infinity if there are no points yet
 } FitSide;
 
 // A zeroed struct may be destroyed.
@@ -24,20 +24,20 @@ typedef struct Fit {
     FitSide (*frames)[4]; // [frame_count], owned
 } Fit;
 
-// Whether the scene leaves the camera to the program, and its target does not move.
+// Whether the camera is automatic and its target does not move.
 bool fit_is_free(const Scene *scene);
 
-// Takes the directions of the scene's camera in each of run.frames frames; `expected` is what
-// outline_frame has found. RESULT_FAILED when memory is short.
+// Records the directions of the scene's camera in each of run.frames frames; `expected` is the
+// result of outline_frame. RESULT_FAILED when memory is short.
 Result fit_create(Fit *fit, const Scene *scene, const Framing *expected, Error *error);
 void fit_destroy(Fit *fit);
 
-// Points that are to be seen in frame `frame`, metres, each with so much around it.
+// Adds points (metres) that must be visible in frame `frame`, each with a margin of `radius`.
 void fit_add(Fit *fit, int frame, const float (*points)[3], size_t count, float radius);
 
-// Moves the eye, and the target if that is automatic, of `framing`, which fit_create was given: in
-// no frame does a point cross the margin (run.margin), and in some it touches it. The target gets
-// the height that brings the camera nearest; of whole turns, before that, the axis from which left
-// and right need the least distance. (Of a part of a turn that would be one in front of the hair.)
-// Without points nothing changes.
+// Moves the eye and, if it is automatic, the target of `framing`, which was passed to fit_create.
+// Afterwards no point crosses the margin (run.margin) in any frame, and some point touches it. The
+// target gets the height that brings the camera nearest. For whole turns, the axis is first moved
+// to where left and right need the smallest distance. (For a part of a turn such an axis would lie
+// in front of the hair.) Changes nothing if there are no points.
 void fit_solve(const Fit *fit, const Scene *scene, Framing *framing);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What the hair stands on: a round piece of a level plane, which fades away from its middle.
+// The floor: a round piece of a horizontal plane that fades out at its edge.
 #pragma once
 
 #include "scene/outline.h"
 
 typedef struct Floor {
-    FloorKind kind;     // none: the rest does not matter
+    FloorKind kind;     // FLOOR_NONE: the other members are unused
     float middle[3];    // m, in the world
-    float whole, faded; // m from the middle: up to there it is whole, from there on gone
+    float whole, faded; // m from the middle: opaque up to `whole`, invisible from `faded` on
     float color[3];     // sRGB 0..1
 } Floor;
 
-// As the scene asks. Automatic is the height of the highest `ground` among its colliders or,
-// without one, just below all that the sequence is expected to show. Around the middle of that it
-// is as wide as what stands there and, for the shadows, as far again as that is high.
+// The floor of the scene. Its automatic height is that of the highest `ground` among the colliders;
+// without one it is just below everything that the sequence is expected to show. It is as wide as
+// that, plus its height to make room for shadows.
 Floor floor_find(const Scene *scene, const Framing *framing);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The motion of a rigid body, the head, over time: by keyframes, by formulas, or by samples.
+// The motion of a rigid body (the head) over time: by keyframes, formulas or samples.
 #pragma once
 
 #include "base/formula.h"
@@ -7,9 +7,9 @@
 #include "mesh/sample_span.h"
 #include "scene/keyframes.h"
 
-// A motion by samples at even times. Between them it follows the smooth curve (sample_span) of the
-// screw motions from a sample to its neighbours, so that what turns evenly about any axis, or flies
-// with constant acceleration, does so between samples too.
+// A motion given by samples at even times. Between samples it follows the smooth curve
+// (sample_span) of the screw motions from a sample to its neighbours. So a body that turns evenly
+// about any axis, or flies with constant acceleration, does so between samples, too.
 typedef struct RigidSamples {
     SampleTimes times;
     RigidMotion *motion; // [times.count]
@@ -17,33 +17,35 @@ typedef struct RigidSamples {
 
 RigidMotion rigid_samples_evaluate(const RigidSamples *samples, double time);
 
-// Rotations are rotation vectors, axis times angle in radians, interpolated number by number: about
-// one fixed axis that is the slerp, except that turns beyond 180 degrees, even several, are made as
-// written. A track without keys and formulas moves or turns nothing; one of the two has either.
+// Rotations are rotation vectors (axis times angle, rad), interpolated by component. For a fixed
+// axis this is a slerp, except that turns of more than 180 degrees, even several turns, are made as
+// written. A track without keys and formulas does nothing; translation and rotation each have
+// either keys or formulas.
 typedef struct RigidTrack {
     Keyframes translation;          // width 3, m
     Keyframes rotation;             // width 3, rad
     Formula translation_formula[3]; // m; all three or none
     Formula rotation_formula[3];    // degrees
-    float pivot[3];                 // m, point that the rotation leaves in place
-    const RigidSamples *samples;    // made before the rest of the track; not owned; NULL: none
+    float pivot[3];                 // m, point that rotations leave in place
+    const RigidSamples *samples;    // applied before the rest of the track; not owned; NULL if
+                                    // there are none
 } RigidTrack;
 
-// Metres, and degrees of a formula's rotation, are cut to this either way.
+// Bound of translations (m) and of a formula's rotation (degrees); values beyond it are clamped.
 #define RIGID_TRACK_MAX 1e6
 
-// The motion at `time` (s): x' = R x + translation takes a point from where it is without the track
-// to where it is at that time. `rotation` is the unit quaternion x, y, z, w of R (cglm's order). A
-// formula's value beyond RIGID_TRACK_MAX counts as that, NaN as 0.
+// The motion at `time` (s): x' = R x + translation moves a point from its place without the track
+// to its place at that time. `rotation` is the unit quaternion x, y, z, w of R (cglm's order). A
+// formula's value is clamped to RIGID_TRACK_MAX; NaN counts as 0.
 void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4],
                           float translation[3]);
 
-// True if the body is at one place at all times.
+// Whether the body stays at one place.
 bool rigid_track_is_still(const RigidTrack *track);
 
-// Whether all formulas are finite and within RIGID_TRACK_MAX at `time`; RESULT_BAD_INPUT naming the
-// formula.
+// Checks that all formulas are finite and within RIGID_TRACK_MAX at `time`; RESULT_BAD_INPUT with
+// the formula's name.
 Result rigid_track_check(const RigidTrack *track, double time, Error *error);
 
-// A zeroed one may be destroyed.
+// A zeroed track may be destroyed.
 void rigid_track_destroy(RigidTrack *track);

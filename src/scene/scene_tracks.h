@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The parts of a scene file that change over time, and its lights.
+// The animated parts of a scene file, and its lights.
 #pragma once
 
 #include "base/json.h"
 #include "scene/scene.h"
 
-// Ranges of what these parts hold, as files have it: times (s), places and turns (m, deg), a
-// light's intensity, its least distance (m) and its cone (deg).
+// Limits of the values in files: times (s), positions and rotations (m, deg), a light's intensity,
+// smallest distance (m) and cone (deg).
 #define SCENE_TIME_MAX_S    1e9
 #define SCENE_OFFSET_MAX    1e6
 #define SCENE_INTENSITY_MAX 1e4
@@ -14,8 +14,8 @@
 #define SCENE_CONE_MIN      0.1
 #define SCENE_CONE_MAX      90.0
 
-// Each reads the value of the key that its name has in the scene file; run/render_help.c
-// explains them to users. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
+// Each function reads the value of the key with its name in the scene file; run/render_help.c
+// documents them. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
 Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,
                               Error *error);
 Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json_t *value,
@@ -23,16 +23,16 @@ Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json
 Result scene_tracks_read_lights(Scene *scene, const JsonPlace *place, const json_t *value,
                                 Error *error);
 
-// {"keys": [{"time": s, "value": [x, y, z]}, ...], "interpolation": "smooth" | "linear"} into
-// `keys`, whose numbers have the range of the constant parameter `info`.
+// Reads {"keys": [{"time": s, "value": [x, y, z]}, ...], "interpolation": "smooth" | "linear"} into
+// `keys`. The values have the range of the constant parameter `info`.
 Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
                               const json_t *value, Error *error);
 
-// The same of one number of a section, or of a color: three numbers or what colors have for flags.
+// The same for a number of a section, or for a color: three numbers or the form of a flag.
 Result scene_tracks_read_numbers(Keyframes *keys, const ParamInfo *info, bool color,
                                  const JsonPlace *place, const json_t *value, Error *error);
 
-// The words of "interpolation" and of a light's "type", by enumerator, ended by NULL.
+// The words of "interpolation" and of a light's "type", by enumerator, terminated by NULL.
 extern const char *const INTERPOLATION_WORDS[];
 extern const char *const LIGHT_KIND_WORDS[];
 

@@ -24,7 +24,7 @@ typedef struct Strands {
     float (*strand_uv)[2]; // [strand_count], texture coordinate at the root, 0..1
     float (*vertex_uv)[2]; // [vertex_count]
     float *strand_thickness; // [strand_count], factor or width as the file says (TressFX)
-    float *strand_group;     // [vertex_count] integers from 0: group of the groom
+    float *strand_group;     // [strand_count] integers from 0: group of the groom
     float *vertex_thickness; // [vertex_count], metres (HAIR files)
     float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
     uint32_t followers;      // per guide, as the file asks for
