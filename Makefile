@@ -251,7 +251,7 @@ SEED = 1
 torture: all tests ## every call of small runs fails in turn, 200 kills: an hour or so (SEED=N, TORTURE_OPTIONS="--only convert")
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
-growth: all tests ## 10,000 scenes of the library and fewer simulations and devices: what stays: some minutes
+growth: all tests ## 10,000 scenes and simulations of the library and 100 devices: what stays: ten minutes
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
 
 # --- Static checks and the sanitizers. All of them run, then the failed ones are named. A single one: make
@@ -364,12 +364,12 @@ check-release: tarball ## unpack it in a clean root and run it (as root, with mm
 	@if [ "$$(id -u)" != 0 ] || ! command -v mmdebstrap >/dev/null; then \
 	    echo "check-release: not root, or no mmdebstrap (scripts/setup deb): skipped, the archive was only made"; exit 0; fi; \
 	scripts/check-tarball out/tarball/*.tar.gz
-# The interface that programs built with an earlier release rely on. Only the types of the library's room are visible.
+# The interface that programs built with an earlier release rely on. Of types only those that tractrix.h describes count: what its handles consist of may change.
 ABI := src/library/tractrix.abi
 $(OUT)/abi/libtractrix.so.0: $(LIBRARY_OBJECTS:$(OUT)/%.o=src/%.c) $(wildcard src/library/*.h) src/library/tractrix.map $(OUT)/libtractrix.a
 	@mkdir -p $(@D)
 	$(call run,LINK,$(CC) $(C_FLAGS) -g $(LD_FLAGS) $(SHARED) -o $@ $(filter %.c,$^) $(OUT)/libtractrix.a $(LD_LIBS))
-ABIDW = abidw --headers-dir src/library --drop-private-types --no-corpus-path --no-comp-dir-path --no-show-locs --no-write-default-sizes --no-elf-needed
+ABIDW = abidw --header-file src/library/tractrix.h --drop-private-types --no-corpus-path --no-comp-dir-path --no-show-locs --no-write-default-sizes --no-elf-needed
 check-abi: $(OUT)/abi/libtractrix.so.0
 	@command -v abidiff >/dev/null || { echo "no abidiff here: skipped"; exit 0; }; \
 	$(ABIDW) --out-file $<.abi $< && abidiff --no-added-syms $(ABI) $<.abi || \

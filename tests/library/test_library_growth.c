@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scenes, simulations, renderers and devices one after the other leave nothing behind: no memory,
-// no file, no thread. TEST_ROUNDS=10000 makes as many scenes, a 25th as many simulations with a
+// no file, no thread. TEST_ROUNDS=10000 makes as many scenes and as many simulations with a
 // picture, and a hundredth as many devices.
 #include "support/library_fixture.h"
 
@@ -50,11 +50,16 @@ static void use_scene(TractrixDevice *device, int round)
                     TRACTRIX_BAD_INPUT, "sections");
 }
 
-// Every second one with a mesh that deforms, since that has the most parts.
+// By several solvers in turn; every second one with a mesh that deforms, since that has the most
+// parts.
 static void use_simulation(TractrixDevice *device, int round)
 {
+    static const char *const algos[] = {"split",  "emulation", "hybrid", "chain",
+                                        "spring", "tressfx",   "rope",   "dftl"};
     bool deforms = round % 2;
-    static const char *const parameters[] = {"followers", "1", "wind", "1,0,0", NULL};
+    size_t kinds = getenv("TEST_ROUNDS") ? sizeof algos / sizeof *algos : 2;
+    const char *algo = algos[(size_t)round / 2 % kinds];
+    const char *const parameters[] = {"algo", algo, "followers", "1", "wind", "1,0,0", NULL};
     static uint8_t pixels[FIXTURE_PIXELS][4];
     TractrixScene *scene = library_scene(parameters);
     TractrixSimulation *simulation;
@@ -89,25 +94,25 @@ static int by_size(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-// `rounds` where SCENES scenes are made; as many go before, until caches are full.
+// `rounds`, or TEST_ROUNDS / share if those are more; `rounds` go before, until caches are full.
 // The driver's own tables still grow and shrink now and then, by some kB at once, so rounds are
 // counted in windows, of which the middle one counts: a leak shows in all of them, such a table in
 // one or two.
 static void measure(void (*use)(TractrixDevice *device, int round), TractrixDevice *device,
-                    int rounds)
+                    int rounds, int share)
 {
     const char *wanted = getenv("TEST_ROUNDS");
-    int scale = wanted && atoi(wanted) > SCENES ? atoi(wanted) / SCENES : 1, count = rounds * scale,
+    int asked = wanted ? atoi(wanted) / share : 0, count = asked > rounds ? asked : rounds,
         window = count / WINDOWS;
     size_t first = 0, before = 0;
     int64_t grown[WINDOWS];
     int files = 0, threads = 0;
-    for (int i = -rounds; i < count; ++i) {
+    for (int i = -rounds; i < window * WINDOWS; ++i) {
         if (i == 0) {
             files = count_entries("/proc/self/fd"), threads = count_entries("/proc/self/task");
             first = before = used();
         }
-        use(device, i);
+        use(device, rounds + i);
         if (i < 0 || (i + 1) % window) continue;
         size_t now = used();
         grown[i / window] = (int64_t)now - (int64_t)before;
@@ -129,7 +134,7 @@ static void measure(void (*use)(TractrixDevice *device, int round), TractrixDevi
 static void scenes_leave_nothing(void **state)
 {
     (void)state;
-    measure(use_scene, NULL, SCENES);
+    measure(use_scene, NULL, SCENES, 1);
 }
 
 static void simulations_leave_nothing(void **state)
@@ -137,14 +142,14 @@ static void simulations_leave_nothing(void **state)
     TractrixDevice *device;
     (void)state;
     WELL(tractrix_device_open(&device, NULL, &error));
-    measure(use_simulation, device, SIMULATIONS);
+    measure(use_simulation, device, SIMULATIONS, 1);
     tractrix_device_destroy(device);
 }
 
 static void devices_leave_nothing(void **state)
 {
     (void)state;
-    measure(use_device, NULL, DEVICES);
+    measure(use_device, NULL, DEVICES, 100);
 }
 
 // Blocks that glibc keeps for a thread's next ones (tcache) count as used: it keeps none here.
