@@ -31,7 +31,7 @@
 #define COLLIDER_NONE(kind, name, numbers, frame)
 #define COLLIDER_ONE(kind, name, numbers, frame) +1
 
-// Groups of shapes in memory: group 0 has all cones, the following ones an OTHER row each.
+// Groups of shapes in memory: group 0 has all cones, each of the others one row of OTHER shapes.
 #define COLLIDER_GROUPS (1 COLLIDERS(COLLIDER_NONE, COLLIDER_ONE))
 
 // vec4 per shape.
