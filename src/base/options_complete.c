@@ -114,7 +114,7 @@ static bool has_negation(const OptionsProgram *program, const Option *option)
 static void write_clause(char clause[CLAUSE_SIZE], const char *help)
 {
     static const char *const ENDS[] = {"; ", ": ", " ["};
-    if (strncmp(help, "* ", 2) == 0) help += 2;
+    if (strncmp(help, "* ", 2) == 0 || strncmp(help, "+ ", 2) == 0) help += 2;
     size_t length = strlen(help);
     for (size_t i = 0; i < sizeof ENDS / sizeof *ENDS; ++i) {
         const char *end = strstr(help, ENDS[i]);

@@ -15,6 +15,7 @@
 
 #define CHOICE_WORD(value, word) word,
 #define ROW_STRUCT_RUN           RunParams
+#define ROW_STRUCT_BODY          BodyParams
 #define ROW_STRUCT_SECTION       SectionParams
 #define PARAM(scope_, KIND, GROUP, owner_, field, letter_, default_, minimum_, maximum_, unit_,    \
               CHOICES, help_)                                                                      \
@@ -76,6 +77,12 @@ Result params_create_run(RunParams *params, Error *error)
     return set_defaults(SCOPE_RUN, params, error);
 }
 
+Result params_create_body(BodyParams *params, Error *error)
+{
+    *params = (BodyParams){0};
+    return set_defaults(SCOPE_BODY, params, error);
+}
+
 Result params_create_section(SectionParams *params, Error *error)
 {
     *params = (SectionParams){0};
@@ -88,27 +95,48 @@ void params_destroy_run(RunParams *params)
     *params = (RunParams){0};
 }
 
+void params_destroy_body(BodyParams *params)
+{
+    free_texts(SCOPE_BODY, params);
+    *params = (BodyParams){0};
+}
+
 void params_destroy_section(SectionParams *params)
 {
     free_texts(SCOPE_SECTION, params);
     *params = (SectionParams){0};
 }
 
-Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error)
+// Replaces the texts of `params`, which is a copy of another struct, by copies of its own.
+static Result own_texts(ParamScope scope, void *params, Error *error)
 {
-    *to = *from;
     bool copied = true;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
-        if (!owns_text(&PARAM_TABLE[i], SCOPE_SECTION)) continue;
-        char **text = text_field(&PARAM_TABLE[i], to);
-        // After one failure set the remaining copies to NULL, so that `to` shares no text with
-        // `from`.
+        if (!owns_text(&PARAM_TABLE[i], scope)) continue;
+        char **text = text_field(&PARAM_TABLE[i], params);
+        // After one failure set the remaining copies to NULL, so that no text is shared.
         *text = copied ? strdup(*text) : NULL;
         copied = *text != NULL;
     }
     if (copied) return RESULT_OK;
-    params_destroy_section(to);
+    free_texts(scope, params);
     return error_set(error, RESULT_FAILED, "out of memory");
+}
+
+Result params_copy_body(BodyParams *to, const BodyParams *from, Error *error)
+{
+    *to = *from;
+    Result result = own_texts(SCOPE_BODY, to, error);
+    if (result != RESULT_OK) *to = (BodyParams){0};
+    return result;
+}
+
+Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error)
+{
+    *to = *from;
+    Result result = own_texts(SCOPE_SECTION, to, error);
+    if (result != RESULT_OK) *to = (SectionParams){0};
+    return result;
 }
 
 // --- Finding parameters.

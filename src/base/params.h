@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The parameters of a run: two structs, and a table by which they are read, written and explained.
-// Names, defaults, ranges and texts stand in params.def only.
+// The parameters of a run: three structs, and a table by which they are read, written and
+// explained. Names, defaults, ranges and texts stand in params.def only.
 #pragma once
 
 #include "base/error.h"
@@ -127,7 +127,7 @@ typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
 typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #undef GROUP_VALUE
 
-// The two structs: a field for every row of params.def.
+// The three structs: a field for every row of params.def.
 #define PARAM_FIELD_BOOL(field)  bool field;
 #define PARAM_FIELD_INT(field)   int field;
 #define PARAM_FIELD_UINT(field)  uint32_t field;
@@ -152,24 +152,34 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #define PARAM_FIELD_PATH(field)       char *field;
 
 #define PARAM_IN_RUN(KIND, field) PARAM_FIELD_##KIND(field)
+#define PARAM_IN_BODY(KIND, field)
 #define PARAM_IN_SECTION(KIND, field)
 #define PARAM(scope, KIND, GROUP, owner, field, ...) PARAM_IN_##scope(KIND, field)
 typedef struct RunParams {
 #include "base/params.def"
 } RunParams;
 #undef PARAM_IN_RUN
-#undef PARAM_IN_SECTION
+#undef PARAM_IN_BODY
 
 #define PARAM_IN_RUN(KIND, field)
+#define PARAM_IN_BODY(KIND, field) PARAM_FIELD_##KIND(field)
+typedef struct BodyParams {
+#include "base/params.def"
+} BodyParams;
+#undef PARAM_IN_BODY
+#undef PARAM_IN_SECTION
+
+#define PARAM_IN_BODY(KIND, field)
 #define PARAM_IN_SECTION(KIND, field) PARAM_FIELD_##KIND(field)
 typedef struct SectionParams {
 #include "base/params.def"
 } SectionParams;
 #undef PARAM_IN_RUN
+#undef PARAM_IN_BODY
 #undef PARAM_IN_SECTION
 #undef PARAM
 
-typedef enum ParamScope { SCOPE_RUN, SCOPE_SECTION } ParamScope;
+typedef enum ParamScope { SCOPE_RUN, SCOPE_BODY, SCOPE_SECTION } ParamScope;
 
 // A row of params.def.
 typedef struct ParamInfo {
@@ -179,7 +189,7 @@ typedef struct ParamInfo {
     ParamGroup group;
     const char *owner; // names of the solvers that have it, a space between; "": all have
     char letter;       // one-letter flag, or 0
-    size_t offset;     // of the field in RunParams or SectionParams, bytes
+    size_t offset;     // of the field in the scope's struct, bytes
     const char *default_text;
     double minimum, maximum;    // of each number, inclusive
     const char *unit;           // "" for a plain number
@@ -193,13 +203,16 @@ extern const char *const GROUP_TITLES[GROUP_COUNT];
 
 // The defaults. RESULT_FAILED when memory is short; the struct may be destroyed in either case.
 Result params_create_run(RunParams *params, Error *error);
+Result params_create_body(BodyParams *params, Error *error);
 Result params_create_section(SectionParams *params, Error *error);
 
 // Free what the struct owns and zero it; a zeroed struct is fine.
 void params_destroy_run(RunParams *params);
+void params_destroy_body(BodyParams *params);
 void params_destroy_section(SectionParams *params);
 
 // A deep copy into `to`, which must not own anything. RESULT_FAILED when memory is short.
+Result params_copy_body(BodyParams *to, const BodyParams *from, Error *error);
 Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error);
 
 // A name besides the row's own that flags and scene files may use, or NULL: --albedo is --color.
@@ -212,10 +225,10 @@ const ParamInfo *params_find(const char *name);
 // Whether the solver of this name (--algo) has the parameter.
 bool params_owned_by(const ParamInfo *info, const char *solver);
 
-// Reads `text` into the row's field of `params`, a RunParams or SectionParams as the row's scope
-// says. RESULT_USAGE if it isn't a value of that kind or out of range: the field keeps its value
-// and the error says what was got and what was expected, but not the parameter's name, which the
-// caller puts before it as its user wrote it. RESULT_FAILED when memory is short.
+// Reads `text` into the row's field of `params`, the struct of the row's scope. RESULT_USAGE if it
+// isn't a value of that kind or out of range: the field keeps its value and the error says what was
+// got and what was expected, but not the parameter's name, which the caller puts before it as its
+// user wrote it. RESULT_FAILED when memory is short.
 Result params_parse(const ParamInfo *info, void *params, const char *text, Error *error);
 
 // The field's value as text that params_parse reads back to the same bits, in its shortest form.

@@ -65,7 +65,9 @@ static void describe(Row *row, const GroomStage *stage)
 {
     row->strands = stage->shape.strand_count;
     row->particles = stage->shape.first[stage->shape.strand_count];
-    row->head = *stage->scene.run.mesh ? "mesh" : stage->assets.has_mesh ? "fitted" : "none";
+    row->head = *stage->scene.bodies[0].params.mesh    ? "mesh"
+                : stage->assets.meshes[0].vertex_count ? "fitted"
+                                                       : "none";
 }
 
 // --- One method on one file at one rate.

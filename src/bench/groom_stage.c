@@ -49,13 +49,13 @@ static Result read_assets(GroomStage *stage, const GroomSetup *setup, Error *err
     TRY(assets_load(&stage->assets, &stage->scene, NULL, false, error));
     TRY(scalp_guess(&stage->scene, &stage->assets, NULL, false, error));
     TRY(thin(&stage->assets.strands[0], setup->strands, error));
-    head_middle(stage->middle, &stage->scene, stage->assets.strands);
+    head_middle(stage->middle, stage->assets.strands, stage->scene.section_count);
     return RESULT_OK;
 }
 
 static Result start_shaking(GroomStage *stage, Error *error)
 {
-    RigidTrack *head = &stage->scene.head;
+    RigidTrack *head = &stage->scene.bodies[0].head;
     memcpy(head->pivot, stage->middle, sizeof head->pivot);
     for (int k = 0; k < 3; ++k)
         TRY(formula_create(&head->rotation_formula[k], k == 1 ? YAW : "0", error));
@@ -128,7 +128,7 @@ Result groom_stage_create(GroomStage *stage, const Gpu *gpu, const GroomSetup *s
     TRY(read_scene(stage, setup, error));
     TRY(read_assets(stage, setup, error));
     if (setup->shaking) TRY(start_shaking(stage, error));
-    const Mesh *mesh = stage->assets.has_mesh ? &stage->assets.mesh : NULL;
+    const Mesh *mesh = assets_have_mesh(&stage->assets) ? stage->assets.meshes : NULL;
     TRY(simulation_create(&stage->simulation, gpu, &stage->timer, &stage->scene,
                           stage->assets.strands, mesh, error));
     TRY(groom_shape_create(&stage->shape, &stage->simulation.sections[0].hair,
@@ -161,7 +161,7 @@ void groom_stage_destroy(GroomStage *stage)
 static Result read_points(GroomStage *stage, Error *error)
 {
     const Hair *hair = &stage->simulation.sections[0].hair;
-    HeadPose head = stage->simulation.head;
+    HeadPose head = stage->simulation.bodies[0].head;
     float(*last)[3] = stage->before;
     stage->before = stage->points, stage->points = last;
     TRY(hair_read_positions(hair, stage->points, error));

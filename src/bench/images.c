@@ -270,7 +270,8 @@ static Result time_passes(Renderer *renderer, const RenderFrame *frame, const Re
 static Result draw_frames(const Stage *stage, const Manner *manner, Renderer *renderer,
                           double *wall, double *processor, Image *image, Row *row, Error *error)
 {
-    const RenderItem item = {&stage->hair, &manner->material, stage->radius};
+    const RenderItem item = {
+        .hair = &stage->hair, .material = &manner->material, .radius = stage->radius};
     const RenderFrame frame = {.view = &stage->view,
                                .lights = stage->scene.lights,
                                .light_count = stage->scene.light_count,

@@ -32,10 +32,10 @@ Result light_stage_create(LightStage *stage, const Gpu *gpu, const char *file,
     TRY(scene_words_read(&stage->scene, &stage->words, names, all, error));
     take_transmission(scene);
     TRY(assets_load(&stage->assets, scene, NULL, false, error));
-    const Mesh *mesh = stage->assets.has_mesh ? &stage->assets.mesh : NULL;
-    outline_frame(&stage->framing, scene, stage->assets.strands, mesh);
+    const Mesh *meshes = stage->assets.meshes;
+    outline_frame(&stage->framing, scene, stage->assets.strands, meshes);
     TRY(simulation_create(&stage->simulation, gpu, &stage->timer, scene, stage->assets.strands,
-                          mesh, error));
+                          meshes, error));
     while (simulation_settle(&stage->simulation))
         if (interrupt_requested()) return error_set(error, RESULT_INTERRUPTED, "interrupted");
     simulation_pose(&stage->simulation);

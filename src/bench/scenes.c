@@ -122,9 +122,10 @@ static Result measure_scene(Row *row, const Gpu *gpu, const SceneKind *kind,
     Result result = scene_create(&scene, error);
     for (int i = 0; i < kind->sections; ++i)
         THEN(result, add_section(&scene, &strands[i], kind, i, row, error));
-    if (kind->colliders) THEN(result, colliders_parse(&scene.colliders, kind->colliders, error));
+    if (kind->colliders)
+        THEN(result, colliders_parse(&scene.bodies[0].colliders, kind->colliders, error));
     if (kind->mesh) THEN(result, scalp_make_mesh(&mesh, SCALP_SPHERE, RINGS, error));
-    scene.run.collide_mesh = kind->mesh;
+    scene.bodies[0].params.collide_mesh = kind->mesh;
     scene.run.sdf_cache = false;
     THEN(result, simulation_create(&simulation, gpu, &timer, &scene, strands, &mesh, error));
     THEN(result, measure_frames(row, &simulation, kind, options, error));

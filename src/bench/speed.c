@@ -172,8 +172,9 @@ static Result draw_frames(Row *row, Renderer *renderer, Simulation *simulation, 
     Framing framing;
     View view;
     outline_frame(&framing, scene, strands, NULL);
-    const RenderItem item = {&simulation->sections[0].hair, &scene->sections[0].params,
-                             paint_auto_radius(strands, 0)};
+    const RenderItem item = {.hair = &simulation->sections[0].hair,
+                             .material = &scene->sections[0].params,
+                             .radius = paint_auto_radius(strands, 0)};
     const RenderFrame frame = {.view = &view,
                                .lights = scene->lights,
                                .light_count = scene->light_count,

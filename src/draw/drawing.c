@@ -4,6 +4,7 @@
 #include "gpu/gpu_uniforms.h"
 #include "image/tone.h"
 #include "sim/hair.h"
+#include "sim/head.h"
 #include "strands/paint.h"
 
 #include "glsl/common/shared_math.h"
@@ -263,13 +264,13 @@ static bool lights_are_simple(const RenderFrame *frame)
                         memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0);
 }
 
-void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle)
+void drawing_find_middle(const RenderItem *item, vec3 middle)
 {
-    versor turn = {0};
-    memcpy(turn, drawing->draw.head_rotation, sizeof turn);
-    for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (hair->low[k] + hair->high[k]);
-    glm_quat_rotatev(turn, middle, middle);
-    for (int k = 0; k < 3; ++k) middle[k] += drawing->draw.head_translation[k];
+    const HeadPose *head = item->head;
+    for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (item->hair->low[k] + item->hair->high[k]);
+    if (!head) return;
+    glm_quat_rotatev((float *)head->rotation, middle, middle);
+    glm_vec3_add(middle, (float *)head->translation, middle);
 }
 
 static bool uses_lod(const LodOptions *lod)
@@ -284,7 +285,7 @@ static float find_share(const RendererOptions *options, const Drawing *drawing,
     const LodOptions *lod = &options->lod;
     const DrawParams *draw = &drawing->draw;
     vec3 middle = {0}, eye = {draw->eye[0], draw->eye[1], draw->eye[2]};
-    drawing_find_middle(drawing, item->hair, middle);
+    drawing_find_middle(item, middle);
     float distance = fmaxf(glm_vec3_distance(middle, eye), draw->near_distance), share = 1;
     if (lod->end > lod->start)
         share -= (1 - lod->least) *

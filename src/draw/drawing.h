@@ -45,8 +45,8 @@ void drawing_upload(Drawing *drawing);
 void drawing_set_window(Drawing *drawing, const RendererOptions *options, const DrawnMesh *mesh,
                         const int place[2], const int size[2]);
 
-// The middle of the hair's rest style, moved as the head is: m, world.
-void drawing_find_middle(const Drawing *drawing, const Hair *hair, vec3 middle);
+// The middle of an item's rest style, moved as its head is: m, world.
+void drawing_find_middle(const RenderItem *item, vec3 middle);
 
 // The number of segments of all items, before any is left out.
 uint64_t drawing_count_segments(const Drawing *drawing);

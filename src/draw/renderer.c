@@ -138,7 +138,7 @@ static Result begin_frame(Renderer *renderer, const RenderFrame *frame, const Re
     TRY(drawing_begin(drawing, &renderer->options, &renderer->mesh, frame, items, item_count,
                       error));
     renderer->frame = (BackendFrame){.drawing = drawing, .frame = frame, .mesh = &renderer->mesh};
-    if (item_count) drawing_find_middle(drawing, items[0].hair, renderer->frame.middle);
+    if (item_count) drawing_find_middle(&items[0], renderer->frame.middle);
     return list_hair(renderer, error);
 }
 

@@ -10,7 +10,8 @@
 #include "scene/floor.h"
 #include "scene/scene.h"
 
-typedef struct Hair Hair; // sim/hair.h
+typedef struct Hair Hair;         // sim/hair.h
+typedef struct HeadPose HeadPose; // sim/head.h
 
 // Level of detail. All zero: all strands are drawn. The strands of a file lie in random order, so
 // the first ones represent the whole.
@@ -61,11 +62,13 @@ typedef struct RendererOptions {
 RendererOptions renderer_options_of(const RunParams *run);
 
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
-// in metres (paint_auto_radius where the section has none).
+// in metres (paint_auto_radius where the section has none). `head`: where the hair's head is; NULL:
+// at the origin.
 typedef struct RenderItem {
     const Hair *hair;
     const SectionParams *material;
     float radius;
+    const HeadPose *head;
 } RenderItem;
 
 // Ambient light: an environment times a factor, or, where that is NULL, sRGB 0..1 from above (+y)

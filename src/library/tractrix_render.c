@@ -35,8 +35,7 @@ static Result aim(TractrixRenderer *renderer, Error *error)
     const Assets *assets = &renderer->simulation->assets;
     SurveyReport unused;
     renderer->aims = renderer->simulation->aims;
-    outline_frame(&renderer->framing, &renderer->scene, assets->strands,
-                  assets->has_mesh ? &assets->mesh : NULL);
+    outline_frame(&renderer->framing, &renderer->scene, assets->strands, assets->meshes);
     if (!survey_is_wanted(&renderer->scene)) return RESULT_OK;
     return survey_fit_camera(&renderer->framing, &unused, &renderer->scene, assets,
                              &renderer->simulation->device->gpu, error);

@@ -60,8 +60,9 @@ static Result apply(Scene *scene, const TractrixScene *of, const LibraryStep *st
 static Result settle(Scene *scene, const TractrixScene *from, Error *error)
 {
     static const char ARRAY[] = "(array)";
-    scene->given_mesh = from->mesh.mesh.vertex_count ? &from->mesh : NULL;
-    if (scene->given_mesh) TRY(params_parse(params_find("mesh"), &scene->run, ARRAY, error));
+    SceneBody *body = &scene->bodies[0];
+    body->given_mesh = from->mesh.mesh.vertex_count ? &from->mesh : NULL;
+    if (body->given_mesh) TRY(params_parse(params_find("mesh"), &body->params, ARRAY, error));
     scene_settle_colors(scene);
     TRY(scene_choose_turn(scene, error));
     scene_set_lights(scene);
@@ -167,9 +168,11 @@ static Result check_file(const char *path, Error *error)
 // Patterns of numbered files ('%') are checked by their reader.
 static Result check_files(const TractrixScene *scene, Error *error)
 {
-    const RunParams *run = &scene->scene.run;
-    if (*run->mesh && !strchr(run->mesh, '%')) TRY(check_file(run->mesh, error));
-    if (*run->mesh_rest) TRY(check_file(run->mesh_rest, error));
+    for (uint32_t b = 0; b < scene->scene.body_count; ++b) {
+        const BodyParams *body = &scene->scene.bodies[b].params;
+        if (*body->mesh && !strchr(body->mesh, '%')) TRY(check_file(body->mesh, error));
+        if (*body->mesh_rest) TRY(check_file(body->mesh_rest, error));
+    }
     for (uint32_t i = 0; i < scene->scene.section_count; ++i)
         TRY(check_file(scene->scene.sections[i].file, error));
     return RESULT_OK;
@@ -244,7 +247,7 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
     if (section < -1 || section >= (int)scene->scene.section_count)
         return error_set(error, RESULT_USAGE, "section: got %d, expected -1 to %d", section,
                          (int)scene->scene.section_count - 1);
-    if (section >= 0 && info->scope == SCOPE_RUN)
+    if (section >= 0 && info->scope != SCOPE_SECTION)
         return error_set(error, RESULT_USAGE, "%s: belongs to the run: expected section -1",
                          info->name);
     TRY(take_step(scene, (LibraryStep){.info = info, .section = section, .text = strdup(text)},
@@ -274,9 +277,8 @@ size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *n
     uint32_t i = section < 0 ? 0 : (uint32_t)section;
     if (text && room) *text = 0;
     if (!info || (info->scope == SCOPE_SECTION && i >= scene->scene.section_count)) return 0;
-    const void *params = info->scope == SCOPE_RUN ? (const void *)&scene->scene.run
-                                                  : &scene->scene.sections[i].params;
-    char *value = params_format(info, params);
+    if (info->scope != SCOPE_SECTION) i = 0; // the run, or the first body
+    char *value = params_format(info, scene_params(&scene->scene, info->scope, i));
     size_t length = value ? put(value, text, room) : 0;
     free(value);
     return length;
@@ -433,6 +435,10 @@ static Result set_mesh(TractrixScene *scene, const TractrixMesh *asked, Error *e
 {
     TractrixMesh from;
     Mesh mesh = {0};
+    if (scene->scene.body_count > 1)
+        return error_set(error, RESULT_USAGE,
+                         "mesh: the scene has %u bodies, each with a mesh of its own: expected one",
+                         scene->scene.body_count);
     if (!asked) return set(scene, -1, "mesh", "", error);
     TRY(library_take(&from, sizeof from, asked, sizeof from, "mesh", error));
     TRY(check_mesh(&from, error));

@@ -83,7 +83,7 @@ static Result load(TractrixSimulation *simulation, const TractrixScene *from, FI
     scene->run.sdf_cache = false; // write no files to the home folder
     TRY(check(scene, error));
     TRY(assets_load(&simulation->assets, scene, messages, false, error));
-    scene->given_mesh = NULL;
+    scene->bodies[0].given_mesh = NULL;
     for (uint32_t i = 0; i < scene->section_count; ++i) scene->sections[i].given = NULL;
     TRY(scalp_guess(scene, &simulation->assets, messages, false, error));
     warn(scene, &simulation->assets, messages);
@@ -96,7 +96,7 @@ static Result open_simulation(void *data, Error *error)
     const Gpu *gpu = &simulation->device->gpu;
     gpu_timer_create(&simulation->timer, false, gpu->software);
     TRY(simulation_create(&simulation->simulation, gpu, &simulation->timer, &simulation->scene,
-                          simulation->assets.strands, &simulation->assets.mesh, error));
+                          simulation->assets.strands, simulation->assets.meshes, error));
     while (simulation_settle(&simulation->simulation)) continue;
     simulation_pose(&simulation->simulation);
     return gpu_check("simulating", error);
@@ -188,10 +188,10 @@ static Result advance(void *data, Error *error)
         RigidMotion to;
         memcpy(to.rotation, frame->head->rotation, sizeof to.rotation);
         memcpy(to.translation, frame->head->translation, sizeof to.translation);
-        TRY(simulation_expect_motion(moved, &simulation->device->gpu, error));
-        driven_head_move(&simulation->driven, &simulation->scene, &to, before, after);
+        TRY(moving_body_expect_motion(moved->bodies, &simulation->device->gpu, error));
+        driven_head_move(&simulation->driven, simulation->scene.bodies, &to, before, after);
     }
-    if (frame->mesh) body_drive(simulation->assets.body, frame->mesh, before, after);
+    if (frame->mesh) body_drive(simulation->assets.bodies, frame->mesh, before, after);
     simulation_advance(moved);
     simulation_pose(moved);
     return gpu_check("simulating", error);
@@ -211,7 +211,7 @@ static Result check_drive(const TractrixSimulation *simulation, Error *error)
 
 static bool is_driven(const TractrixSimulation *simulation)
 {
-    return simulation->assets.body && simulation->assets.body->anchors.points;
+    return simulation->assets.bodies[0].anchors.points;
 }
 
 static Result check_pose(const TractrixSimulation *simulation, const TractrixPose *head,
@@ -220,7 +220,11 @@ static Result check_pose(const TractrixSimulation *simulation, const TractrixPos
     const double *q = head->rotation, *t = head->translation;
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     TRY(check_drive(simulation, error));
-    if (simulation->assets.body)
+    if (simulation->scene.body_count > 1)
+        return error_set(error, RESULT_USAGE,
+                         "head: the scene has %u bodies, which move as it says: expected NULL",
+                         simulation->scene.body_count);
+    if (simulation->scene.bodies[0].shape)
         return error_set(error, RESULT_USAGE,
                          "head: the mesh deforms: expected NULL, or tractrix_simulation_"
                          "advance_mesh");
@@ -247,7 +251,7 @@ TractrixResult tractrix_simulation_advance(TractrixSimulation *simulation, const
 static Result check_mesh(const TractrixSimulation *simulation, const float *position,
                          uint32_t vertex_count, Error *error)
 {
-    const Mesh *mesh = &simulation->assets.mesh;
+    const Mesh *mesh = simulation->assets.meshes;
     TRY(check_drive(simulation, error));
     if (!is_driven(simulation))
         return error_set(error, RESULT_USAGE,

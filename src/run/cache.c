@@ -422,7 +422,7 @@ Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error
     TRY(make_frame_room(writer, count / 3, error));
     TRY(read_positions(writer, simulation, error));
     double begin_ms = clock_ms();
-    put_head(writer->payload, &simulation->head);
+    put_head(writer->payload, &simulation->bodies[0].head);
     size_t size = float_planes_pack((const float *)writer->positions, count, CACHE_STRIDE,
                                     writer->payload + HEAD_BYTES);
     if (size == 0 || !add_offset(&writer->offsets, &writer->frame_count, &writer->room, writer->at))

@@ -59,22 +59,31 @@ static void keep_what_moves(json_t *object)
     for (size_t i = 0; i < sizeof DRAWN / sizeof *DRAWN; ++i) json_object_del(object, DRAWN[i]);
 }
 
-// Removes from a scene and its sections what does not move hair. Without --collide-mesh the mesh
+// Removes from a body and its sections what does not move hair. Without --collide-mesh the mesh
 // does not, either.
-static void keep_values(json_t *scene)
+static void keep_body(json_t *body)
 {
-    const json_t *sections = json_object_get(scene, "sections");
-    keep_what_moves(scene);
-    if (!json_object_get(scene, "mesh_checksum"))
-        json_object_set_new(scene, "collide_mesh", json_false());
+    const json_t *sections = json_object_get(body, "sections");
+    keep_what_moves(body);
+    if (!json_object_get(body, "mesh_checksum"))
+        json_object_set_new(body, "collide_mesh", json_false());
     for (size_t i = 0; i < json_array_size(sections); ++i)
         keep_what_moves(json_array_get(sections, i));
 }
 
-// The properties of a deforming mesh that the motion of hair depends on.
-static json_t *describe_body(const Simulation *simulation)
+// The same for a scene, which is a body itself unless it lists bodies.
+static void keep_values(json_t *scene)
 {
-    const MeshSequence *sequence = &simulation->scene->body->sequence;
+    const json_t *bodies = json_object_get(scene, "bodies");
+    if (!bodies) keep_body(scene);
+    keep_what_moves(scene);
+    for (size_t i = 0; i < json_array_size(bodies); ++i) keep_body(json_array_get(bodies, i));
+}
+
+// The properties of a deforming mesh that the motion of hair depends on.
+static json_t *describe_shape(const Body *shape)
+{
+    const MeshSequence *sequence = &shape->sequence;
     const SampleTimes *times = &sequence->times;
     return json_pack("{s:I, s:I, s:f, s:f, s:b}", "checksum", (json_int_t)sequence->checksum,
                      "samples", (json_int_t)times->count, "fps", times->rate, "start", times->start,
@@ -83,11 +92,16 @@ static json_t *describe_body(const Simulation *simulation)
 
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error)
 {
-    json_t *object = scene_to_json(simulation->scene);
-    if (simulation->mesh_checksum)
-        json_object_set_new(object, "mesh_checksum", json_integer(simulation->mesh_checksum));
+    const Scene *scene = simulation->scene;
+    json_t *object = scene_to_json(scene), *bodies = json_object_get(object, "bodies");
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        json_t *body = bodies ? json_array_get(bodies, b) : object;
+        uint32_t checksum = simulation->bodies[b].mesh_checksum;
+        const Body *shape = scene->bodies[b].shape;
+        if (checksum) json_object_set_new(body, "mesh_checksum", json_integer(checksum));
+        if (shape) json_object_set_new(body, "body", describe_shape(shape));
+    }
     keep_values(object);
-    if (simulation->scene->body) json_object_set_new(object, "body", describe_body(simulation));
     json_object_set_new(object, MAKER, json_string(cache_scene_own_maker()));
     // 17 digits: key times are doubles.
     char *dump = json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));

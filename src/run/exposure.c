@@ -86,7 +86,7 @@ static Scene meter_scene(const Scene *scene, Aov aov)
     run->oit = OIT_AUTO;
     run->oit_layers = 0;
     run->floor = FLOOR_NONE;
-    run->collide_mesh = false;
+    for (uint32_t b = 0; b < small.body_count; ++b) small.bodies[b].params.collide_mesh = false;
     run->from_cache = hair;
     run->quiet = true;
     small.sections = NULL;
@@ -107,7 +107,6 @@ static void carry(float (*positions)[3], size_t count, const HeadPose *head)
 // Moves the hair with the head to its pose at time 0.
 static Result put_hair(Simulation *simulation, Error *error)
 {
-    const HeadPose head = head_at(simulation->scene, 0);
     uint32_t sections = simulation->scene->section_count;
     size_t count = 0, first = 0;
     for (uint32_t i = 0; i < sections; ++i) count += simulation->sections[i].hair.particle_count;
@@ -115,11 +114,12 @@ static Result put_hair(Simulation *simulation, Error *error)
     if (!positions) return error_set(error, RESULT_FAILED, "no memory for %zu points", count);
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < sections && result == RESULT_OK; ++i) {
-        const Hair *hair = &simulation->sections[i].hair;
-        result = hair_read_positions(hair, positions + first, error);
-        first += hair->particle_count;
+        const SimulationSection *section = &simulation->sections[i];
+        result = hair_read_positions(&section->hair, positions + first, error);
+        carry(positions + first, section->hair.particle_count, &section->body->head);
+        first += section->hair.particle_count;
     }
-    carry(positions, first, &head);
+    const HeadPose head = simulation->bodies[0].head;
     THEN(result, simulation_show(simulation, 0, &head, (const float(*)[3])positions, error));
     free(positions);
     return result;
@@ -151,7 +151,7 @@ Result exposure_find(float *exposure, const Scene *scene, const Assets *assets,
     Result result = make_all_grey(&meter.scene[LIGHT], scene, error);
     meter.scene[HAIR].sections = meter.scene[LIGHT].sections;
     THEN(result, simulation_create(&meter.simulation, gpu, &meter.timer, &meter.scene[LIGHT],
-                                   assets->strands, &assets->mesh, error));
+                                   assets->strands, assets->meshes, error));
     THEN(result, put_hair(&meter.simulation, error));
     for (int i = 0; i < DRAWINGS; ++i) THEN(result, draw(&meter, i, assets, framing, gpu, error));
     THEN(result, meter_exposure(exposure, &meter.image[LIGHT], &meter.image[HAIR],

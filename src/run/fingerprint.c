@@ -87,19 +87,22 @@ static uint64_t add_array(uint64_t hash, const void *data, size_t size)
 
 // --- The hashed values.
 
+// Removes exempt values from a scene, body or section, and from the sections in it.
 static void remove_exempt(json_t *object)
 {
     for (size_t i = 0; i < FINGERPRINT_EXEMPT_COUNT; ++i)
         json_object_del(object, FINGERPRINT_EXEMPT[i].name);
     json_object_del(object, "file"); // the content of the file is hashed, not its name
+    json_t *sections = json_object_get(object, "sections");
+    for (size_t i = 0; i < json_array_size(sections); ++i)
+        remove_exempt(json_array_get(sections, i));
 }
 
 static Result add_values(uint64_t *hash, const Scene *scene, Error *error)
 {
-    json_t *object = scene_to_json(scene), *sections = json_object_get(object, "sections");
+    json_t *object = scene_to_json(scene), *bodies = json_object_get(object, "bodies");
     remove_exempt(object);
-    for (size_t i = 0; i < json_array_size(sections); ++i)
-        remove_exempt(json_array_get(sections, i));
+    for (size_t i = 0; i < json_array_size(bodies); ++i) remove_exempt(json_array_get(bodies, i));
     char *text = json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
     if (text) *hash = add_text(*hash, text);
     Result result =
@@ -151,11 +154,14 @@ static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets
         *hash = add_strands(*hash, &assets->strands[i]);
         TRY(add_map(hash, scene->sections[i].params.color_map, error));
     }
-    *hash = add_mesh(*hash, &assets->mesh);
     if (assets->environment.parts)
         *hash = add_array(*hash, assets->environment.parts,
                           ENVIRONMENT_PARTS * sizeof *assets->environment.parts);
-    if (assets->body) *hash = add_number(*hash, assets->body->sequence.checksum);
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        *hash = add_mesh(*hash, &assets->meshes[b]);
+        if (scene->bodies[b].shape)
+            *hash = add_number(*hash, scene->bodies[b].shape->sequence.checksum);
+    }
     return RESULT_OK;
 }
 

@@ -60,10 +60,11 @@ static Result create_items(Images *images, Error *error)
         if (params->hidden) continue;
         float radius = paint_radius(params, &images->assets->strands[i], section->follow.per_guide);
         TRY(paint_section(images, i, error));
-        images->items[images->item_count++] = (RenderItem){&section->hair, params, radius};
+        const HeadPose *head = &section->body->head;
+        images->items[images->item_count++] = (RenderItem){&section->hair, params, radius, head};
         if (section->follow.per_guide)
             images->items[images->item_count++] =
-                (RenderItem){&section->follow.hair, params, radius};
+                (RenderItem){&section->follow.hair, params, radius, head};
     }
     return RESULT_OK;
 }
@@ -90,38 +91,50 @@ static RendererOptions describe_images(const Images *images, ImageKind kind)
     return options;
 }
 
-// Computes how much of the sky each vertex of the mesh sees, for the shading of skin.
-static Result open_sky(Images *images, Error *error)
+// Computes how much of the sky each vertex of a body sees, for the shading of skin. Other bodies
+// and their hair do not count.
+static Result find_openness(const Images *images, uint32_t b, float *open, Error *error)
 {
-    const Assets *assets = images->assets;
-    const RendererOptions *options = &images->renderer.options;
-    uint32_t count = 0, sections = images->scene->section_count;
-    if (!assets->has_mesh || options->mesh_shading != MESH_SKIN || options->aov != AOV_NONE)
-        return RESULT_OK;
-    OpennessHair *hair = calloc((size_t)sections + 1, sizeof *hair);
-    float *open = malloc((size_t)assets->mesh.vertex_count * sizeof *open + 1);
-    Result result = RESULT_OK;
-    if (!hair || !open) result = error_set(error, RESULT_FAILED, "no memory for the mesh's sky");
-    for (uint32_t i = 0; i < sections && result == RESULT_OK; ++i) {
+    const SceneBody *body = &images->scene->bodies[b];
+    uint32_t count = 0;
+    OpennessHair *hair = calloc((size_t)body->section_count + 1, sizeof *hair);
+    if (!hair) return error_set(error, RESULT_FAILED, "no memory for the mesh's sky");
+    for (uint32_t i = body->first; i < body->first + body->section_count; ++i) {
         const SectionParams *params = &images->scene->sections[i].params;
+        const Strands *strands = &images->assets->strands[i];
         uint32_t followers = images->simulation->sections[i].follow.per_guide;
         if (params->hidden) continue;
-        hair[count++] =
-            (OpennessHair){.strands = &assets->strands[i],
-                           .radius = paint_radius(params, &assets->strands[i], followers),
-                           .each = 1 + (float)followers};
+        hair[count++] = (OpennessHair){.strands = strands,
+                                       .radius = paint_radius(params, strands, followers),
+                                       .each = 1 + (float)followers};
     }
-    THEN(result, openness_find(open, &assets->mesh, hair, count, error));
-    THEN(result, renderer_set_openness(&images->renderer, open, error));
+    Result result = openness_find(open, &images->assets->meshes[b], hair, count, error);
     free(hair);
+    return result;
+}
+
+static Result open_sky(Images *images, Error *error)
+{
+    const RendererOptions *options = &images->renderer.options;
+    const DrawnBodies *bodies = &images->bodies;
+    if (!bodies->mesh.vertex_count || options->mesh_shading != MESH_SKIN ||
+        options->aov != AOV_NONE)
+        return RESULT_OK;
+    float *open = malloc((size_t)bodies->mesh.vertex_count * sizeof *open);
+    Result result =
+        open ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the mesh's sky");
+    for (uint32_t b = 0; b < images->assets->body_count; ++b)
+        if (images->assets->meshes[b].vertex_count)
+            THEN(result, find_openness(images, b, open + bodies->bodies[b].first, error));
+    THEN(result, renderer_set_openness(&images->renderer, open, error));
     free(open);
     return result;
 }
 
-static Result list_scalp_hair(const Images *images, ScalpHair *hair, Paint *paints, uint32_t *count,
-                              Error *error)
+static Result list_scalp_hair(const Images *images, const SceneBody *body, ScalpHair *hair,
+                              Paint *paints, uint32_t *count, Error *error)
 {
-    for (uint32_t i = 0; i < images->scene->section_count; ++i) {
+    for (uint32_t i = body->first; i < body->first + body->section_count; ++i) {
         const SectionParams *params = &images->scene->sections[i].params;
         const Strands *strands = &images->assets->strands[i];
         uint32_t followers = images->simulation->sections[i].follow.per_guide;
@@ -139,26 +152,39 @@ static Result list_scalp_hair(const Images *images, ScalpHair *hair, Paint *pain
     return RESULT_OK;
 }
 
-// Gives the scalp the tint of its roots, of the colours at the start.
-static Result tint_scalp(Images *images, Error *error)
+// Computes the tint that a body's scalp takes from its own roots.
+static Result find_tint(const Images *images, uint32_t b, float (*tint)[3], Error *error)
 {
-    const Assets *assets = images->assets;
-    const RunParams *run = &images->scene->run;
-    uint32_t count = 0, sections = images->scene->section_count;
-    if (!assets->has_mesh || run->scalp_tint == 0 || run->aov != AOV_NONE) return RESULT_OK;
-    ScalpHair *hair = calloc((size_t)sections + 1, sizeof *hair);
-    Paint *paints = calloc((size_t)sections + 1, sizeof *paints);
-    float(*tint)[3] = malloc((size_t)assets->mesh.vertex_count * sizeof *tint + 1);
+    const SceneBody *body = &images->scene->bodies[b];
+    uint32_t count = 0;
+    ScalpHair *hair = calloc((size_t)body->section_count + 1, sizeof *hair);
+    Paint *paints = calloc((size_t)body->section_count + 1, sizeof *paints);
     Result result = RESULT_OK;
-    if (!hair || !paints || !tint)
+    if (!hair || !paints)
         result = error_set(error, RESULT_FAILED, "no memory for the tint of the scalp");
-    THEN(result, list_scalp_hair(images, hair, paints, &count, error));
-    THEN(result, scalp_tint_find(tint, &assets->mesh, images->renderer.mesh.color, run->scalp_tint,
-                                 hair, count, error));
-    THEN(result, renderer_set_tint(&images->renderer, (const float(*)[3])tint, error));
-    for (uint32_t i = 0; paints && i < sections; ++i) paint_destroy(&paints[i]);
+    THEN(result, list_scalp_hair(images, body, hair, paints, &count, error));
+    THEN(result, scalp_tint_find(tint, &images->assets->meshes[b], images->renderer.mesh.color,
+                                 images->scene->run.scalp_tint, hair, count, error));
+    for (uint32_t i = 0; paints && i < body->section_count; ++i) paint_destroy(&paints[i]);
     free(hair);
     free(paints);
+    return result;
+}
+
+// Gives the scalps the tint of their roots, of the colours at the start.
+static Result tint_scalp(Images *images, Error *error)
+{
+    const RunParams *run = &images->scene->run;
+    const DrawnBodies *bodies = &images->bodies;
+    if (!bodies->mesh.vertex_count || run->scalp_tint == 0 || run->aov != AOV_NONE)
+        return RESULT_OK;
+    float(*tint)[3] = malloc((size_t)bodies->mesh.vertex_count * sizeof *tint);
+    Result result =
+        tint ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the tint of the scalp");
+    for (uint32_t b = 0; b < images->assets->body_count; ++b)
+        if (images->assets->meshes[b].vertex_count)
+            THEN(result, find_tint(images, b, tint + bodies->bodies[b].first, error));
+    THEN(result, renderer_set_tint(&images->renderer, (const float(*)[3])tint, error));
     free(tint);
     return result;
 }
@@ -166,10 +192,9 @@ static Result tint_scalp(Images *images, Error *error)
 static Result open_one(Images *images, Renderer *renderer, const RendererOptions *options,
                        GpuTimer *timer, Error *error)
 {
-    const Assets *assets = images->assets;
     TRY(renderer_create(renderer, images->gpu, timer, options, error));
-    if (!assets->has_mesh) return RESULT_OK;
-    return renderer_set_mesh(renderer, &assets->mesh, images->scene->run.mesh_color, error);
+    if (!images->bodies.mesh.vertex_count) return RESULT_OK;
+    return renderer_set_mesh(renderer, &images->bodies.mesh, images->scene->run.mesh_color, error);
 }
 
 static Result open_layers(Images *images, const RendererOptions *options, GpuTimer *timer,
@@ -190,23 +215,13 @@ static Result open_layers(Images *images, const RendererOptions *options, GpuTim
     return RESULT_OK;
 }
 
-static Result copy_body(Images *images, Error *error)
-{
-    const Mesh *mesh = &images->assets->mesh;
-    if (!images->scene->body) return RESULT_OK;
-    TRY(mesh_create(&images->body, mesh->vertex_count, mesh->triangle_count, error));
-    memcpy(images->body.triangle, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
-    images->body_shape = bound_body_shape(&images->simulation->body, 0);
-    return RESULT_OK;
-}
-
 static Result open_all(Images *images, const ImagesForm *form, GpuTimer *timer, Error *error)
 {
     const RendererOptions options = describe_images(images, form->kind);
+    TRY(drawn_bodies_create(&images->bodies, images->assets, images->simulation, error));
     TRY(open_one(images, &images->renderer, &options, timer, error));
     if (form->layers) TRY(open_layers(images, &options, timer, error));
     TRY(create_items(images, error));
-    TRY(copy_body(images, error));
     TRY(open_sky(images, error));
     return tint_scalp(images, error);
 }
@@ -226,7 +241,7 @@ void images_destroy(Images *images)
     for (int l = 0; l < EXR_LAYERS && images->layers; ++l) renderer_destroy(&images->layers[l]);
     free(images->layers);
     free(images->items);
-    mesh_destroy(&images->body);
+    drawn_bodies_destroy(&images->bodies);
     *images = (Images){0};
 }
 
@@ -238,18 +253,10 @@ static int count_layers(const Images *images)
 // Moves the mesh to its pose at the simulation's time.
 static void move_mesh(Images *images)
 {
-    Simulation *simulation = images->simulation;
-    if (!images->body.vertex_count) return;
-    double shape = bound_body_shape(&simulation->body, simulation->time);
-    if (shape == images->body_shape) return;
-    const BodyPose *pose = bound_body_pose(&simulation->body, simulation->time);
-    images->body_shape = shape;
-    memcpy(images->body.position, pose->position,
-           images->body.vertex_count * sizeof *pose->position);
-    mesh_compute_normals(&images->body);
-    renderer_move_mesh(&images->renderer, &images->body);
+    if (!drawn_bodies_move(&images->bodies)) return;
+    renderer_move_mesh(&images->renderer, &images->bodies.mesh);
     for (int l = 0; l < count_layers(images); ++l)
-        renderer_move_mesh(&images->layers[l], &images->body);
+        renderer_move_mesh(&images->layers[l], &images->bodies.mesh);
 }
 
 // Updates radii that change over time. Everything else of a look is read from the parameters.
@@ -284,8 +291,9 @@ static Result begin_by(Images *images, Renderer *renderer, int frame, const View
                             .strength = scene->run.environment_strength};
     memcpy(ambient.sky, scene->run.sky, sizeof ambient.sky);
     memcpy(ambient.ground, scene->run.ground, sizeof ambient.ground);
-    memcpy(drawn.head_rotation, simulation->head.rotation, sizeof drawn.head_rotation);
-    memcpy(drawn.head_translation, simulation->head.translation, sizeof drawn.head_translation);
+    const HeadPose *head = &simulation->bodies[0].head; // of DrawnBodies.mesh
+    memcpy(drawn.head_rotation, head->rotation, sizeof drawn.head_rotation);
+    memcpy(drawn.head_translation, head->translation, sizeof drawn.head_translation);
     return renderer_begin(renderer, &drawn, images->items, images->item_count, image, error);
 }
 

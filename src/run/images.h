@@ -4,6 +4,7 @@
 
 #include "draw/renderer.h"
 #include "image/exr_file.h"
+#include "run/drawn_bodies.h"
 #include "scene/assets.h"
 #include "scene/outline.h"
 #include "sim/simulation.h"
@@ -19,8 +20,7 @@ typedef struct Images {
     Renderer *layers;  // [EXR_LAYERS], owned; NULL: none
     RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
     uint32_t item_count;
-    Mesh body;         // of a mesh that deforms: as it is drawn; owned
-    double body_shape; // ... bound_body_shape
+    DrawnBodies bodies;
 } Images;
 
 // What the pixels are, and whether there are also those of EXR's layers.

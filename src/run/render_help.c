@@ -19,7 +19,8 @@ static const char DESCRIPTION[] =
     "the scene file.";
 
 static const char *const NOTES[] = {
-    "Options marked * set the value of every hair file; a scene file can give each its own.",
+    "Options marked * set the value of every hair file; a scene file can give each its own. "
+    "Options marked + set the value of every body of a scene file.",
     "--option VALUE and --option=VALUE are the same. --no-option switches off an option without a "
     "value. If an option is given twice, the last one counts. -- ends the options.",
     NULL};
@@ -57,6 +58,15 @@ static const char *const SCENE_KEYS[][3] = {
     {"head", "{\"translate\": [\"0.02*sin(2*pi*t)\", 0, 0], \"rotate\": [0, \"30*sin(6*t)\", 0]}",
      "the same by formulas of the time t in s: + - * / ^, a ? b : c, pi, sin, exp, min, abs ... "
      "(those of muParser), smoothstep(a, b, x)"},
+    {"bodies",
+     "[{\"mesh\": \"a.npz\", \"sections\": [{\"file\": \"a.tfx\"}]}, {\"mesh\": \"b.obj\", "
+     "\"head\": "
+     "{...}, \"sections\": [...]}]",
+     "up to 16 heads or bodies in place of sections and head: each with its sections and, if it "
+     "has "
+     "them, its own head, colliders and values of the options marked +. Hair collides with the "
+     "mesh "
+     "and the colliders of its own body"},
     {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
      "gravity or wind that changes over time; a constant value is an array of three numbers"},
     {"camera",
@@ -88,7 +98,8 @@ static const OptionsChapter SCENE_FILES = {
         "A scene file is a JSON object. Its keys are the options, with '_' in place of '-'. Values "
         "are numbers, true or false, arrays for X,Y,Z and WxH, and strings for everything else. "
         "Options marked * can be in a section, or beside the sections and then hold for all of "
-        "them. Paths are relative to the file's folder. Numbers and colors of a section can "
+        "them; so can options marked + in a body. Paths are relative to the file's folder. Numbers "
+        "and colors of a section can "
         "change over time: {\"keys\": [{\"time\": 0, \"value\": 0.5}, ...]}; numbers also by a "
         "formula: {\"formula\": \"0.5*exp(-t)\"}. "
         "Values between keyframes are interpolated smoothly (monotone "
@@ -151,8 +162,10 @@ static void write_text(const ParamInfo *info, char *text, size_t size)
     bool on = info->kind == PARAM_BOOL && strcmp(info->default_text, "true") == 0;
     bool shown = info->default_text[0] && (info->kind != PARAM_BOOL || on);
     bool any = range[0] || shown;
-    snprintf(text, size, "%s%s%s%s%s%s%s%s", info->scope == SCOPE_SECTION ? "* " : "", info->help,
-             any ? " [" : "", range, range[0] && shown ? "; " : "", shown ? "default " : "",
+    static const char *const MARKS[] = {
+        [SCOPE_RUN] = "", [SCOPE_BODY] = "+ ", [SCOPE_SECTION] = "* "};
+    snprintf(text, size, "%s%s%s%s%s%s%s%s", MARKS[info->scope], info->help, any ? " [" : "", range,
+             range[0] && shown ? "; " : "", shown ? "default " : "",
              !shown ? ""
              : on   ? "on"
                     : info->default_text,

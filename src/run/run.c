@@ -214,8 +214,7 @@ static Result aim(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     SurveyReport report;
-    outline_frame(&run->framing, &run->scene, run->assets.strands,
-                  run->assets.has_mesh ? &run->assets.mesh : NULL);
+    outline_frame(&run->framing, &run->scene, run->assets.strands, run->assets.meshes);
     if (!survey_is_wanted(&run->scene)) return RESULT_OK;
     TRY(survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error));
     activity_set(NULL);
@@ -311,7 +310,7 @@ static Result prepare(Run *run, Error *error)
     if (draws) TRY(expose(run, error));
     activity_set("uploading hair");
     TRY(simulation_create(&run->simulation, &run->gpu, &run->timer, &run->scene,
-                          run->assets.strands, &run->assets.mesh, error));
+                          run->assets.strands, run->assets.meshes, error));
     activity_set(NULL);
     if (draws && !params->quiet) report_filled(run);
     TRY(open_source(run, error));

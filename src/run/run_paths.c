@@ -64,11 +64,9 @@ static Result check_inputs(const Scene *scene, Error *error)
     for (size_t row = 0; scene->file && row < PARAM_COUNT; ++row) {
         const ParamInfo *info = &PARAM_TABLE[row];
         if (info->kind != PARAM_PATH || is_written(info)) continue;
-        if (info->scope == SCOPE_RUN && scene->origin[row] != ORIGIN_FLAG)
-            TRY(check_input(scene, path_of(info, &scene->run), error));
-        for (uint32_t i = 0; info->scope == SCOPE_SECTION && i < scene->section_count; ++i)
-            if (scene->sections[i].origin[row] != ORIGIN_FLAG)
-                TRY(check_input(scene, path_of(info, &scene->sections[i].params), error));
+        for (uint32_t i = 0; i < scene_count(scene, info->scope); ++i)
+            if (scene_origins(scene, info->scope, i)[row] != ORIGIN_FLAG)
+                TRY(check_input(scene, path_of(info, scene_params(scene, info->scope, i)), error));
     }
     return RESULT_OK;
 }
@@ -95,9 +93,10 @@ static PathRole role_of(const ParamInfo *info)
     return strcmp(info->name, "stats") == 0 ? PATH_WRITTEN : PATH_TARGET;
 }
 
-// Adds the parameters of this scope that are paths (rows of PARAM_TABLE).
-static void add_params(List *list, const Scene *scene, ParamScope scope, const void *params)
+// Adds the parameters of this scope that are paths (rows of PARAM_TABLE), of one element of it.
+static void add_params(List *list, const Scene *scene, ParamScope scope, uint32_t element)
 {
+    const void *params = scene_params(scene, scope, element);
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
         const ParamInfo *info = &PARAM_TABLE[i];
         char flag[64] = "--";
@@ -125,9 +124,10 @@ static char *find_record(const char *path,
 // The names in `list` must live as long as the claims, until the program ends.
 Result run_paths_claim(const Scene *scene, Error *error)
 {
-    enum { RUN_PATHS = 16, SECTION_PATHS = 4 };
+    enum { RUN_PATHS = 16, BODY_PATHS = 2, SECTION_PATHS = 4 };
     static List list;
-    size_t room = RUN_PATHS + (size_t)scene->section_count * SECTION_PATHS;
+    size_t room = RUN_PATHS + (size_t)scene->body_count * BODY_PATHS +
+                  (size_t)scene->section_count * SECTION_PATHS;
     TRY(check_allowance(scene, error));
     TRY(check_inputs(scene, error));
     char *state = NULL; // the state file that --cache writes beside the cache
@@ -141,13 +141,14 @@ Result run_paths_claim(const Scene *scene, Error *error)
     Result result = there ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for paths");
     if (result == RESULT_OK) {
         add(&list, "the scene file", scene->file, PATH_READ, NULL);
-        add_params(&list, scene, SCOPE_RUN, &scene->run);
+        add_params(&list, scene, SCOPE_RUN, 0);
+        for (uint32_t b = 0; b < scene->body_count; ++b) add_params(&list, scene, SCOPE_BODY, b);
         add(&list, "--cache's state", state, PATH_KEPT, find_home(scene, "cache"));
         add(&list, "--output's record", records[0], PATH_KEPT, find_home(scene, "output"));
         add(&list, "--export's record", records[1], PATH_KEPT, find_home(scene, "export"));
         for (uint32_t i = 0; i < scene->section_count; ++i) {
             add(&list, "the hair file", scene->sections[i].file, PATH_READ, NULL);
-            add_params(&list, scene, SCOPE_SECTION, &scene->sections[i].params);
+            add_params(&list, scene, SCOPE_SECTION, i);
         }
         result = paths_claim(list.uses, list.count, error);
     }

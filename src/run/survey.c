@@ -2,6 +2,7 @@
 #include "run/survey.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "run/drawn_bodies.h"
 #include "run/frame_source.h"
 #include "run/stats.h"
 #include "scene/fit.h"
@@ -26,6 +27,7 @@ typedef struct Survey {
     GpuTimer timer;
     Simulation simulation;
     FrameSource source;
+    DrawnBodies bodies; // empty: they are not framed
     Fit fit;
     Group *groups;
     uint32_t group_count;
@@ -59,8 +61,10 @@ static Result make_room(Survey *survey, Error *error)
         add_group(survey, section->hair.particle_count, radius);
         add_group(survey, section->follow.hair.particle_count, radius);
     }
-    if (survey->groups && survey->assets->has_mesh && scene->run.framing != FRAMING_HAIR)
-        add_group(survey, survey->assets->mesh.vertex_count, 0);
+    if (scene->run.framing != FRAMING_HAIR)
+        TRY(drawn_bodies_create(&survey->bodies, survey->assets, &survey->simulation, error));
+    if (survey->groups && survey->bodies.mesh.vertex_count)
+        add_group(survey, survey->bodies.mesh.vertex_count, 0);
     size_t size = survey->point_count * sizeof *survey->points + 1;
     survey->points = malloc(size);
     survey->before = malloc(size);
@@ -96,11 +100,10 @@ static Result read_points(Survey *survey, Error *error)
                                          error);
     }
     if (survey->group_count > 2 * sections) {
-        const Mesh *mesh = &survey->assets->mesh;
-        BoundBody *body = &survey->simulation.body;
-        const float(*position)[3] = (const float(*)[3])(
-            body->body ? bound_body_pose(body, survey->simulation.time)->position : mesh->position);
-        carry_mesh(position, mesh->vertex_count, &survey->simulation.head,
+        const Mesh *mesh = &survey->bodies.mesh;
+        drawn_bodies_move(&survey->bodies);
+        carry_mesh((const float(*)[3])mesh->position, mesh->vertex_count,
+                   &survey->simulation.bodies[0].head,
                    survey->points + survey->groups[2 * sections].first);
     }
     return result;
@@ -170,6 +173,7 @@ static Result look(Survey *survey, SurveyReport *report, Error *error)
 static void close_survey(Survey *survey)
 {
     fit_destroy(&survey->fit);
+    drawn_bodies_destroy(&survey->bodies);
     frame_source_close(&survey->source);
     simulation_destroy(&survey->simulation);
     gpu_timer_destroy(&survey->timer);
@@ -187,7 +191,7 @@ Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *sc
     double begin = clock_ms();
     gpu_timer_create(&survey.timer, false, gpu->software);
     Result result = simulation_create(&survey.simulation, gpu, &survey.timer, scene,
-                                      assets->strands, &assets->mesh, error);
+                                      assets->strands, assets->meshes, error);
     THEN(result, frame_source_look(&survey.source, &survey.simulation, assets->strands,
                                    scene->run.frames - 1, error));
     THEN(result, fit_create(&survey.fit, scene, framing, error));

@@ -88,39 +88,45 @@ static void warn_apart(const Body *body, FILE *messages)
                 quote(body->name).text, 1e3 * (double)apart);
 }
 
+// A body to be loaded, and the results.
+typedef struct BodyLoad {
+    Assets *assets;
+    const RunParams *run;
+    SceneBody *body;
+    Mesh *mesh;
+    Body *shape;
+    FILE *messages;
+} BodyLoad;
+
 // Binds the hair to the mesh, and makes the mesh move the head.
-static Result bind_hair(Assets *assets, Scene *scene, MeshSequence *sequence, const Mesh *rest,
-                        FILE *messages, Error *error)
+static Result bind_hair(const BodyLoad *load, MeshSequence *sequence, const Mesh *rest,
+                        Error *error)
 {
-    const RunParams *run = &scene->run;
-    const BodyOptions options = {.name = run->mesh,
-                                 .driven = scene->given_mesh && scene->given_mesh->deforms,
-                                 .cut_distance = run->teleport_distance,
-                                 .cut_angle_deg = run->teleport_angle};
-    const RigidTrack *head = &scene->head;
+    SceneBody *body = load->body;
+    const BodyOptions options = {.name = body->params.mesh,
+                                 .driven = body->given_mesh && body->given_mesh->deforms,
+                                 .cut_distance = load->run->teleport_distance,
+                                 .cut_angle_deg = load->run->teleport_angle};
+    const RigidTrack *head = &body->head;
     bool tracked = head->translation.count || head->rotation.count ||
                    head->translation_formula[0].text || head->rotation_formula[0].text;
-    assets->body = calloc(1, sizeof *assets->body);
-    if (!assets->body) return error_set(error, RESULT_FAILED, "no memory for %s", run->mesh);
-    TRY(body_create(assets->body, sequence, &assets->mesh, rest, assets->strands,
-                    assets->section_count, &options, error));
-    warn_apart(assets->body, messages);
-    scene->body = assets->body;
-    scene->head.samples = &assets->body->head;
-    if (!tracked) body_middle(assets->body, scene->head.pivot);
+    TRY(body_create(load->shape, sequence, load->mesh, rest, &load->assets->strands[body->first],
+                    body->section_count, &options, error));
+    warn_apart(load->shape, load->messages);
+    body->shape = load->shape;
+    body->head.samples = &load->shape->head;
+    if (!tracked) body_middle(load->shape, body->head.pivot);
     return RESULT_OK;
 }
 
-static Result load_sequence(Assets *assets, Scene *scene, const MeshSequenceOptions *options,
-                            FILE *messages, Error *error)
+static Result load_sequence(const BodyLoad *load, const MeshSequenceOptions *options, Error *error)
 {
     MeshSequence sequence = {0};
     Mesh rest = {0};
     Result result =
-        mesh_sequence_read(&sequence, &assets->mesh, &rest, scene->run.mesh, options, error);
+        mesh_sequence_read(&sequence, load->mesh, &rest, load->body->params.mesh, options, error);
     bool deforms = sequence.times.count > 1 || rest.vertex_count > 0;
-    if (result == RESULT_OK && deforms)
-        result = bind_hair(assets, scene, &sequence, &rest, messages, error);
+    if (result == RESULT_OK && deforms) result = bind_hair(load, &sequence, &rest, error);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&rest);
     return result;
@@ -128,9 +134,9 @@ static Result load_sequence(Assets *assets, Scene *scene, const MeshSequenceOpti
 
 // Prepares a mesh that the caller drives by body_drive: two equal samples stand for the samples to
 // come. Vertices may move by up to a quarter of the mesh's longest side.
-static Result drive_given(Assets *assets, Scene *scene, FILE *messages, Error *error)
+static Result drive_given(const BodyLoad *load, Error *error)
 {
-    const Mesh *mesh = &assets->mesh, none = {0};
+    const Mesh *mesh = load->mesh, none = {0};
     MeshSequence sequence = {.times = {.count = 2, .rate = 1, .linear = true},
                              .vertex_count = mesh->vertex_count};
     size_t size = mesh->vertex_count * sizeof *mesh->position;
@@ -138,79 +144,99 @@ static Result drive_given(Assets *assets, Scene *scene, FILE *messages, Error *e
     if (!sequence.position)
         return error_set(error, RESULT_FAILED, "no memory for a mesh that deforms");
     for (uint32_t i = 0; i < 2; ++i) memcpy(mesh_sequence_at(&sequence, i), mesh->position, size);
-    rigid_track_destroy(&scene->head); // the caller moves the head
-    Result result = bind_hair(assets, scene, &sequence, &none, messages, error);
+    rigid_track_destroy(&load->body->head); // the caller moves the head
+    Result result = bind_hair(load, &sequence, &none, error);
     mesh_sequence_destroy(&sequence);
     if (result != RESULT_OK) return result;
     float low[3], high[3];
     mesh_bounds(mesh, low, high);
     for (int k = 0; k < 3; ++k)
-        assets->body->margin = fmaxf(assets->body->margin, 0.25f * (high[k] - low[k]));
+        load->shape->margin = fmaxf(load->shape->margin, 0.25f * (high[k] - low[k]));
     return RESULT_OK;
 }
 
-static Result take_given_mesh(Assets *assets, Scene *scene, FILE *messages, Error *error)
+static Result take_given_mesh(const BodyLoad *load, Error *error)
 {
-    const Mesh *given = &scene->given_mesh->mesh;
-    assets->has_mesh = true;
-    TRY(mesh_create(&assets->mesh, given->vertex_count, given->triangle_count, error));
-    memcpy(assets->mesh.position, given->position, given->vertex_count * sizeof *given->position);
-    memcpy(assets->mesh.triangle, given->triangle, given->triangle_count * sizeof *given->triangle);
-    mesh_compute_normals(&assets->mesh);
-    return scene->given_mesh->deforms ? drive_given(assets, scene, messages, error) : RESULT_OK;
+    const Mesh *given = &load->body->given_mesh->mesh;
+    Mesh *mesh = load->mesh;
+    TRY(mesh_create(mesh, given->vertex_count, given->triangle_count, error));
+    memcpy(mesh->position, given->position, given->vertex_count * sizeof *given->position);
+    memcpy(mesh->triangle, given->triangle, given->triangle_count * sizeof *given->triangle);
+    mesh_compute_normals(mesh);
+    return load->body->given_mesh->deforms ? drive_given(load, error) : RESULT_OK;
 }
 
-static Result load_mesh(Assets *assets, Scene *scene, FILE *messages, Error *error)
+static Result load_body(const BodyLoad *load, Error *error)
 {
-    const RunParams *run = &scene->run;
-    if (scene->given_mesh) return take_given_mesh(assets, scene, messages, error);
-    if (!*run->mesh) return RESULT_OK;
-    const StrandsReport *first = assets->section_count ? &assets->reports[0] : NULL;
+    const SceneBody *body = load->body;
+    const BodyParams *params = &body->params;
+    if (body->given_mesh) return take_given_mesh(load, error);
+    if (!*params->mesh) return RESULT_OK;
+    const StrandsReport *first = body->section_count ? &load->assets->reports[body->first] : NULL;
     MeshSequenceOptions options = {
-        .unit = run->mesh_unit.automatic ? 0 : (double)run->mesh_unit.value,
+        .unit = params->mesh_unit.automatic ? 0 : (double)params->mesh_unit.value,
         .otherwise_unit = first ? (double)first->unit_used : 1,
-        .up_z = run->mesh_up == UP_AUTO ? -1 : run->mesh_up == UP_Z,
+        .up_z = params->mesh_up == UP_AUTO ? -1 : params->mesh_up == UP_Z,
         .otherwise_up_z = first && first->up_z,
-        .rest = run->mesh_rest,
-        .rate = run->mesh_fps.automatic ? 0 : (double)run->mesh_fps.value,
-        .otherwise_rate = (double)run->fps,
-        .start = (double)run->mesh_start,
-        .linear = run->mesh_motion == MESH_LINEAR,
+        .rest = params->mesh_rest,
+        .rate = params->mesh_fps.automatic ? 0 : (double)params->mesh_fps.value,
+        .otherwise_rate = (double)load->run->fps,
+        .start = (double)params->mesh_start,
+        .linear = params->mesh_motion == MESH_LINEAR,
     };
-    assets->has_mesh = true;
     activity_set("reading the mesh");
-    if (mesh_sequence_matches(run->mesh))
-        return load_sequence(assets, scene, &options, messages, error);
+    if (mesh_sequence_matches(params->mesh)) return load_sequence(load, &options, error);
     float unit = (float)(options.unit > 0 ? options.unit : options.otherwise_unit);
     bool up_z = (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1;
-    return mesh_read(&assets->mesh, run->mesh, unit, up_z, error);
+    return mesh_read(load->mesh, params->mesh, unit, up_z, error);
 }
 
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error)
 {
-    *assets = (Assets){.section_count = scene->section_count};
+    *assets = (Assets){.section_count = scene->section_count, .body_count = scene->body_count};
     assets->strands = calloc((size_t)scene->section_count + 1, sizeof *assets->strands);
     assets->reports = calloc((size_t)scene->section_count + 1, sizeof *assets->reports);
-    if (!assets->strands || !assets->reports)
+    assets->meshes = calloc((size_t)scene->body_count + 1, sizeof *assets->meshes);
+    assets->bodies = calloc((size_t)scene->body_count + 1, sizeof *assets->bodies);
+    if (!assets->strands || !assets->reports || !assets->meshes || !assets->bodies)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(load_section(assets, scene, i, messages, verbose, error));
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        const BodyLoad load = {.assets = assets,
+                               .run = &scene->run,
+                               .body = &scene->bodies[b],
+                               .mesh = &assets->meshes[b],
+                               .shape = &assets->bodies[b],
+                               .messages = messages};
+        TRY(load_body(&load, error));
+    }
     if (*scene->run.environment)
         TRY(environment_read(&assets->environment, scene->run.environment, error));
-    return load_mesh(assets, scene, messages, error);
+    return RESULT_OK;
 }
 
 void assets_destroy(Assets *assets)
 {
     for (uint32_t i = 0; assets->strands && i < assets->section_count; ++i)
         strands_destroy(&assets->strands[i]);
+    for (uint32_t b = 0; assets->meshes && b < assets->body_count; ++b)
+        mesh_destroy(&assets->meshes[b]);
+    for (uint32_t b = 0; assets->bodies && b < assets->body_count; ++b)
+        body_destroy(&assets->bodies[b]);
     free(assets->strands);
     free(assets->reports);
-    mesh_destroy(&assets->mesh);
+    free(assets->meshes);
+    free(assets->bodies);
     environment_destroy(&assets->environment);
-    if (assets->body) body_destroy(assets->body);
-    free(assets->body);
     *assets = (Assets){0};
+}
+
+bool assets_have_mesh(const Assets *assets)
+{
+    bool any = false;
+    for (uint32_t b = 0; b < assets->body_count; ++b) any = any || assets->meshes[b].vertex_count;
+    return any;
 }
 
 Result assets_check(const Scene *scene, FILE *stream)

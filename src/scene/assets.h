@@ -11,18 +11,21 @@ typedef struct Assets {
     uint32_t section_count;
     Strands *strands;       // [section_count]
     StrandsReport *reports; // [section_count]
-    Mesh mesh;              // empty if there is none; of a sequence: the mesh at time 0
-    bool has_mesh;
+    uint32_t body_count;
+    Mesh *meshes;            // [body_count]; empty if there is none; of a sequence: at time 0
+    Body *bodies;            // [body_count], the deforming meshes; zero if there is none
     Environment environment; // empty if there is none
-    Body *body;              // the deforming mesh, owned; NULL if there is none
 } Assets;
 
-// Reads all files that the scene names. A deforming mesh becomes the scene's body and moves its
-// head (scene->head.samples) as long as the assets exist; strands lie on it as at time 0. Prints
+// Reads all files that the scene names. A deforming mesh becomes its body's shape and moves its
+// head (SceneBody.head.samples) as long as the assets exist; strands lie on it as at time 0. Prints
 // what was mended and, if `verbose`, guessed units on `messages` (NULL: does not print). Errors of
 // strands_read and mesh_read; the assets may be destroyed after an error.
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);
+
+// Whether any body has a mesh.
+bool assets_have_mesh(const Assets *assets);
 
 // Implements --check: reads the file of every section and prints its report, or the reason why it
 // cannot be read, on `stream`. RESULT_OK if all are clean, RESULT_FAILED if any has defects,

@@ -6,14 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- Conditions. `of` and its parameters `section` are NULL for parameters of the run.
+// --- Conditions. `body` is NULL for parameters of the run; `of` and its parameters `section` for
+// those of run and bodies.
 
 #define CONDITION(name, holds)                                                                     \
-    static bool name(const Scene *scene, const Section *of, const SectionParams *section)          \
+    static bool name(const Scene *scene, const SceneBody *body, const Section *of,                 \
+                     const SectionParams *section)                                                 \
     {                                                                                              \
-        (void)scene, (void)of, (void)section;                                                      \
+        (void)scene, (void)body, (void)of, (void)section;                                          \
         return holds;                                                                              \
     }
+// One that holds for any body where the parameter is the run's.
+#define BODY_CONDITION(name, holds)                                                                \
+    static bool name##_of(const Scene *scene, const SceneBody *body)                               \
+    {                                                                                              \
+        (void)scene;                                                                               \
+        return holds;                                                                              \
+    }                                                                                              \
+    CONDITION(name, holds_for(scene, body, name##_of))
 static bool writes(const char *output, const char *suffix)
 {
     size_t length = strlen(output), own = strlen(suffix);
@@ -27,6 +37,15 @@ static bool reads_any_file(const Scene *scene)
     return any;
 }
 
+static bool holds_for(const Scene *scene, const SceneBody *body,
+                      bool (*holds)(const Scene *scene, const SceneBody *body))
+{
+    bool any = body && holds(scene, body);
+    for (uint32_t i = 0; !body && i < scene->body_count; ++i)
+        any = any || holds(scene, &scene->bodies[i]);
+    return any;
+}
+
 // An OBJ or PLY file is a single shape; a pattern names a sequence.
 static bool may_deform(const char *mesh)
 {
@@ -36,15 +55,15 @@ static bool may_deform(const char *mesh)
 
 CONDITION(reads_files, reads_any_file(scene))
 CONDITION(reads_file, !of->given)
-CONDITION(reads_mesh, !scene->given_mesh)
+BODY_CONDITION(reads_mesh, !body->given_mesh)
 // Without a mesh, a head may be fitted to the hair.
-CONDITION(has_head, *scene->run.mesh || scene->run.scalp != SCALP_NONE)
-CONDITION(has_colliders,
-          scene->colliders.count > 0 || (scene->run.collide_mesh && has_head(scene, of, section)))
+BODY_CONDITION(has_head, *body->params.mesh || scene->run.scalp != SCALP_NONE)
+BODY_CONDITION(has_colliders,
+               body->colliders.count > 0 || (body->params.collide_mesh && has_head_of(scene, body)))
 CONDITION(collides, section->collide)
-CONDITION(collides_mesh, scene->run.collide_mesh)
-CONDITION(has_mesh, *scene->run.mesh)
-CONDITION(has_sequence, may_deform(scene->run.mesh))
+BODY_CONDITION(collides_mesh, body->params.collide_mesh)
+BODY_CONDITION(has_mesh, *body->params.mesh)
+BODY_CONDITION(has_sequence, may_deform(body->params.mesh))
 CONDITION(has_wind, scene->wind.count > 0 || scene->run.wind[0] != 0 || scene->run.wind[1] != 0 ||
                         scene->run.wind[2] != 0)
 CONDITION(has_gusts, scene->run.gust > 0)
@@ -78,7 +97,8 @@ CONDITION(moves, strcmp(section->algo, "none") != 0)
 // The condition of each parameter, and the reason to print if it does not hold.
 static const struct {
     const char *names; // names, separated by blanks
-    bool (*holds)(const Scene *scene, const Section *of, const SectionParams *section);
+    bool (*holds)(const Scene *scene, const SceneBody *body, const Section *of,
+                  const SectionParams *section);
     const char *why;
 } EFFECTS[] = {
     {"unit up group array points_per_strand", reads_file, "the hair is from an array"},
@@ -133,18 +153,22 @@ static bool lists(const char *names, const char *name)
     return false;
 }
 
-// Why the parameter has no effect in the section (NULL: in the run). Returns NULL if it has an
-// effect.
-static const char *find_reason(const ParamInfo *info, const Scene *scene, const Section *section,
+// Why the parameter has no effect in this element of its scope. Returns NULL if it has an effect.
+static const char *find_reason(const ParamInfo *info, const Scene *scene, uint32_t element,
                                char text[80])
 {
+    const Section *section = info->scope == SCOPE_SECTION ? &scene->sections[element] : NULL;
+    const SceneBody *body = section                    ? scene_body_of(scene, element)
+                            : info->scope == SCOPE_RUN ? NULL
+                                                       : &scene->bodies[element];
     if (section && !params_owned_by(info, section->params.algo)) {
         snprintf(text, 80, "--algo %.40s has no such parameter", section->params.algo);
         return text;
     }
     const SectionParams *params = section ? &section->params : NULL;
     for (size_t i = 0; i < sizeof EFFECTS / sizeof *EFFECTS; ++i)
-        if (lists(EFFECTS[i].names, info->name) && !EFFECTS[i].holds(scene, section, params)) {
+        if (lists(EFFECTS[i].names, info->name) &&
+            !EFFECTS[i].holds(scene, body, section, params)) {
             snprintf(text, 80, "it has no effect: %s", EFFECTS[i].why);
             return text;
         }
@@ -158,11 +182,9 @@ static const char *find_shared_reason(const ParamInfo *info, const Scene *scene,
 {
     size_t row = (size_t)(info - PARAM_TABLE);
     const char *reason = NULL;
-    if (info->scope == SCOPE_RUN)
-        return scene->origin[row] == origin ? find_reason(info, scene, NULL, text) : NULL;
-    for (uint32_t i = 0; i < scene->section_count; ++i) {
-        if (scene->sections[i].origin[row] != origin) continue;
-        reason = find_reason(info, scene, &scene->sections[i], text);
+    for (uint32_t i = 0; i < scene_count(scene, info->scope); ++i) {
+        if (scene_origins(scene, info->scope, i)[row] != origin) continue;
+        reason = find_reason(info, scene, i, text);
         if (!reason) return NULL;
     }
     return reason;
@@ -202,23 +224,29 @@ static bool is_default(const ParamInfo *info, const void *params)
     return same;
 }
 
+// Where an element's own keys stand in the scene file.
+static SectionPlace place_of(const Scene *scene, ParamScope scope, uint32_t element)
+{
+    SectionPlace place = {""};
+    if (scope == SCOPE_SECTION) return scene_section_place(scene, element);
+    snprintf(place.text, sizeof place.text, "bodies[%u]", element);
+    return place;
+}
+
 void effects_warn(const Scene *scene, FILE *stream)
 {
     char reason[80];
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        const void *first = info->scope == SCOPE_RUN ? (const void *)&scene->run
-                            : scene->section_count   ? (const void *)&scene->sections[0].params
-                                                     : NULL;
-        if (first && !is_default(info, first) &&
+        uint32_t count = scene_count(scene, info->scope);
+        if (count && !is_default(info, scene_params(scene, info->scope, 0)) &&
             find_shared_reason(info, scene, ORIGIN_SHARED_KEY, reason))
             fprintf(stream, "%s: %s: %s\n", quote(scene->file).text, info->name, reason);
-        for (uint32_t s = 0; info->scope == SCOPE_SECTION && s < scene->section_count; ++s) {
-            const Section *section = &scene->sections[s];
-            if (section->origin[i] == ORIGIN_KEY && !is_default(info, &section->params) &&
-                find_reason(info, scene, section, reason))
-                fprintf(stream, "%s: sections[%u].%s: %s\n", quote(scene->file).text, s, info->name,
-                        reason);
-        }
+        for (uint32_t e = 0; e < count; ++e)
+            if (scene_origins(scene, info->scope, e)[i] == ORIGIN_KEY &&
+                !is_default(info, scene_params(scene, info->scope, e)) &&
+                find_reason(info, scene, e, reason))
+                fprintf(stream, "%s: %s.%s: %s\n", quote(scene->file).text,
+                        place_of(scene, info->scope, e).text, info->name, reason);
     }
 }

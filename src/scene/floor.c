@@ -10,9 +10,12 @@ static const float FADE = 3;    // radius at which the floor has faded out, over
 static float find_height(const Scene *scene, const Outline *all)
 {
     float height = -INFINITY;
-    for (uint32_t i = 0; i < scene->colliders.count; ++i)
-        if (scene->colliders.list[i].kind == COLLIDER_GROUND)
-            height = fmaxf(height, scene->colliders.list[i].numbers[0]);
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        const Colliders *colliders = &scene->bodies[b].colliders;
+        for (uint32_t i = 0; i < colliders->count; ++i)
+            if (colliders->list[i].kind == COLLIDER_GROUND)
+                height = fmaxf(height, colliders->list[i].numbers[0]);
+    }
     if (!scene->run.floor_height.automatic) return scene->run.floor_height.value;
     return height > -INFINITY ? height : all->low[1] - GAP * (all->high[1] - all->low[1]);
 }

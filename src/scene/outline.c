@@ -106,9 +106,9 @@ static void keyed_or_constant(const Keyframes *keys, double time, const float co
         memcpy(value, constant, sizeof(vec3));
 }
 
-static void moment_at(Moment *moment, const Scene *scene, double time)
+static void moment_at(Moment *moment, const Scene *scene, const SceneBody *body, double time)
 {
-    rigid_track_evaluate(&scene->head, time, moment->rotation, moment->translation);
+    rigid_track_evaluate(&body->head, time, moment->rotation, moment->translation);
     keyed_or_constant(&scene->gravity, time, scene->run.gravity, moment->gravity);
     keyed_or_constant(&scene->wind, time, scene->run.wind, moment->wind);
 }
@@ -205,12 +205,12 @@ static void root_moved(const Body *body, uint32_t section, uint32_t s, const flo
 
 // Adds the body at a time to `shape`, and the style at the roots' positions at that time to
 // `style`.
-static void outline_body(Outline *style, Outline *shape, const Scene *scene, const Strands *strands,
-                         const float (*position)[3])
+static void outline_body(Outline *style, Outline *shape, const SceneBody *of,
+                         const Strands *strands, const float (*position)[3])
 {
-    const Body *body = scene->body;
+    const Body *body = of->shape;
     outline_add(shape, position, body->mesh->vertex_count);
-    for (uint32_t i = 0; i < scene->section_count; ++i)
+    for (uint32_t i = 0; i < of->section_count; ++i)
         for (uint32_t s = 0; s < strands[i].strand_count; s += strand_stride(&strands[i], TIMES)) {
             float moved[3], at[3];
             root_moved(body, i, s, position, moved);
@@ -221,37 +221,48 @@ static void outline_body(Outline *style, Outline *shape, const Scene *scene, con
         }
 }
 
-static void add_body_at(Framing *framing, const Scene *scene, const Strands *strands, double time,
-                        const Moment *moment)
+static void add_body_at(Framing *framing, const SceneBody *body, const Strands *strands,
+                        double time, const Moment *moment)
 {
     Outline style = {0}, shape = {0};
-    float(*position)[3] = malloc(scene->body->mesh->vertex_count * sizeof *position + 1);
+    float(*position)[3] = malloc(body->shape->mesh->vertex_count * sizeof *position + 1);
     if (!position) return; // then the camera frames the mesh at time 0
-    mesh_sequence_evaluate(&scene->body->sequence, time, position);
-    outline_body(&style, &shape, scene, strands, (const float(*)[3])position);
+    mesh_sequence_evaluate(&body->shape->sequence, time, position);
+    outline_body(&style, &shape, body, strands, (const float(*)[3])position);
     add_carried(&framing->hair, &style, moment);
     add_carried(&framing->all, &shape, moment);
     free(position);
 }
 
-static void find_outlines(Framing *framing, const Scene *scene, const Strands *strands,
-                          const Mesh *mesh)
+// `strands`: of the body's sections. `mesh`: NULL: none.
+static void add_body(Framing *framing, const Scene *scene, const SceneBody *body,
+                     const Strands *strands, const Mesh *mesh)
 {
-    Outline style = {0}, body = {0};
-    for (uint32_t i = 0; i < scene->section_count; ++i) add_style(&style, &strands[i]);
-    if (mesh) outline_add(&body, (const float(*)[3])mesh->position, mesh->vertex_count);
-    bool moves = !rigid_track_is_still(&scene->head) || scene->gravity.count || scene->wind.count;
+    Outline style = {0}, shape = {0};
+    const Section *sections = &scene->sections[body->first];
+    for (uint32_t i = 0; i < body->section_count; ++i) add_style(&style, &strands[i]);
+    if (mesh) outline_add(&shape, (const float(*)[3])mesh->position, mesh->vertex_count);
+    bool moves = !rigid_track_is_still(&body->head) || scene->gravity.count || scene->wind.count;
     double duration = schedule_frame_time(&scene->run, scene->run.frames);
     uint32_t times = moves ? TIMES : 1;
     for (uint32_t t = 0; t < times; ++t) {
         Moment moment = {0};
         double time = duration * t / (TIMES - 1);
-        moment_at(&moment, scene, time);
+        moment_at(&moment, scene, body, time);
         add_carried(&framing->hair, &style, &moment);
-        add_carried(&framing->all, &body, &moment);
-        if (scene->body) add_body_at(framing, scene, strands, time, &moment);
-        for (uint32_t i = 0; i < scene->section_count; ++i)
-            add_rest(&framing->hair, &strands[i], &scene->sections[i].params, &moment, times);
+        add_carried(&framing->all, &shape, &moment);
+        if (body->shape) add_body_at(framing, body, strands, time, &moment);
+        for (uint32_t i = 0; i < body->section_count; ++i)
+            add_rest(&framing->hair, &strands[i], &sections[i].params, &moment, times);
+    }
+}
+
+static void find_outlines(Framing *framing, const Scene *scene, const Strands *strands,
+                          const Mesh *meshes)
+{
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        const SceneBody *body = &scene->bodies[b];
+        add_body(framing, scene, body, &strands[body->first], meshes ? &meshes[b] : NULL);
     }
     grow_outline(&framing->hair, farthest_follower(scene, strands));
     add_outline(&framing->all, &framing->hair);
@@ -311,10 +322,10 @@ static void place_eye(Framing *framing, const Scene *scene)
     for (int k = 0; k < 3; ++k) framing->eye[k] = framing->target[k] + distance * axes.back[k];
 }
 
-void outline_frame(Framing *framing, const Scene *scene, const Strands *strands, const Mesh *mesh)
+void outline_frame(Framing *framing, const Scene *scene, const Strands *strands, const Mesh *meshes)
 {
     memset(framing, 0, sizeof *framing);
-    find_outlines(framing, scene, strands, mesh);
+    find_outlines(framing, scene, strands, meshes);
     const Outline *outline = outline_shown(framing, scene);
     for (int k = 0; k < 3; ++k) framing->target[k] = 0.5f * (outline->low[k] + outline->high[k]);
     if (scene->target.count)

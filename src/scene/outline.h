@@ -38,7 +38,9 @@ void outline_corner(const Outline *outline, int which, float corner[3]);
 // the shape in which hair comes to rest. For the latter, each strand is rebuilt from its root with
 // directions between gravity + drag * wind and the style, according to the section's style. Space
 // for followers is added. Motions are sampled at 16 times. `strands`: metres, one set per section.
-// `mesh`: NULL if there is none. The eye is in front (+z), 25 degrees to the side and 10 degrees
-// above, at the distance at which everything stays in the frame with a margin (run.margin) at all
-// angles of the turntable. With a floor, "everything" includes the mesh, which stands on it.
-void outline_frame(Framing *framing, const Scene *scene, const Strands *strands, const Mesh *mesh);
+// `meshes`: one per body; NULL if there is none. The eye is in front (+z), 25 degrees to the side
+// and 10 degrees above, at the distance at which everything stays in the frame with a margin
+// (run.margin) at all angles of the turntable. With a floor, "everything" includes the mesh, which
+// stands on it.
+void outline_frame(Framing *framing, const Scene *scene, const Strands *strands,
+                   const Mesh *meshes);

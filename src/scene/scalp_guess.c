@@ -54,13 +54,14 @@ static Result add_colliders(Colliders *colliders, const ScalpFit *fit, Error *er
     return RESULT_OK;
 }
 
-// Fits the scalp to the visible sections. The copies in `seen` do not own their arrays.
-static Result fit_sections(ScalpFit *fit, const Scene *scene, const Assets *assets, Error *error)
+// Fits the scalp to the body's visible sections. The copies in `seen` do not own their arrays.
+static Result fit_sections(ScalpFit *fit, const Scene *scene, const SceneBody *body,
+                           const Assets *assets, Error *error)
 {
     uint32_t count = 0;
-    Strands *seen = malloc((scene->section_count + (size_t)1) * sizeof *seen);
+    Strands *seen = malloc((body->section_count + (size_t)1) * sizeof *seen);
     if (!seen) return error_set(error, RESULT_FAILED, "no memory to look for a scalp");
-    for (uint32_t i = 0; i < scene->section_count; ++i)
+    for (uint32_t i = body->first; i < body->first + body->section_count; ++i)
         if (!scene->sections[i].params.hidden) seen[count++] = assets->strands[i];
     *fit = scalp_fit(seen, count);
     free(seen);
@@ -100,16 +101,26 @@ static void report(FILE *messages, const ScalpFit *fit, double unit, bool verbos
         suggest_unit(messages, fit, unit);
 }
 
+// Fits a head to the hair of a body without a mesh.
+static Result guess(Scene *scene, uint32_t b, Assets *assets, FILE *messages, bool verbose,
+                    Error *error)
+{
+    SceneBody *body = &scene->bodies[b];
+    ScalpFit fit = {0};
+    if (assets->meshes[b].vertex_count) return RESULT_OK;
+    TRY(fit_sections(&fit, scene, body, assets, error));
+    if (messages) report(messages, &fit, (double)assets->reports[body->first].unit_used, verbose);
+    if (!fit.found) return RESULT_OK;
+    TRY(make_mesh(&assets->meshes[b], &fit, error));
+    if (!body->params.collide_mesh) return RESULT_OK;
+    body->params.collide_mesh = false; // the shapes take over from the mesh
+    return add_colliders(&body->colliders, &fit, error);
+}
+
 Result scalp_guess(Scene *scene, Assets *assets, FILE *messages, bool verbose, Error *error)
 {
-    ScalpFit fit = {0};
-    if (assets->has_mesh || scene->run.scalp == SCALP_NONE) return RESULT_OK;
-    TRY(fit_sections(&fit, scene, assets, error));
-    if (messages) report(messages, &fit, (double)assets->reports[0].unit_used, verbose);
-    if (!fit.found) return RESULT_OK;
-    TRY(make_mesh(&assets->mesh, &fit, error));
-    assets->has_mesh = true;
-    if (!scene->run.collide_mesh) return RESULT_OK;
-    scene->run.collide_mesh = false; // the shapes take over from the mesh
-    return add_colliders(&scene->colliders, &fit, error);
+    if (scene->run.scalp == SCALP_NONE) return RESULT_OK;
+    for (uint32_t b = 0; b < scene->body_count; ++b)
+        TRY(guess(scene, b, assets, messages, verbose, error));
+    return RESULT_OK;
 }

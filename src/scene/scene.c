@@ -68,13 +68,16 @@ void scene_destroy(Scene *scene)
     free(scene->sections);
     free(scene->file);
     params_destroy_run(&scene->run);
-    rigid_track_destroy(&scene->head);
+    for (uint32_t i = 0; i < SCENE_MAX_BODIES; i++) {
+        params_destroy_body(&scene->bodies[i].params);
+        rigid_track_destroy(&scene->bodies[i].head);
+        colliders_destroy(&scene->bodies[i].colliders);
+    }
     keyframes_destroy(&scene->gravity);
     keyframes_destroy(&scene->wind);
     keyframes_destroy(&scene->eye);
     keyframes_destroy(&scene->target);
     keyframes_destroy(&scene->fov);
-    colliders_destroy(&scene->colliders);
     *scene = (Scene){0};
 }
 
@@ -95,9 +98,57 @@ Result scene_add_section(Scene *scene, const char *file, const SectionParams *pa
         free(section.file);
         return result;
     }
+    SceneBody *body = &scene->bodies[scene->body_count - 1];
+    if (!body->section_count) body->first = scene->section_count;
+    ++body->section_count;
     sections[scene->section_count++] = section;
     return RESULT_OK;
 }
+
+// --- Elements.
+
+uint32_t scene_count(const Scene *scene, ParamScope scope)
+{
+    return scope == SCOPE_RUN ? 1 : scope == SCOPE_BODY ? scene->body_count : scene->section_count;
+}
+
+void *scene_params(const Scene *scene, ParamScope scope, uint32_t element)
+{
+    Scene *of = (Scene *)scene;
+    return scope == SCOPE_RUN    ? (void *)&of->run
+           : scope == SCOPE_BODY ? (void *)&of->bodies[element].params
+                                 : &of->sections[element].params;
+}
+
+uint8_t *scene_origins(const Scene *scene, ParamScope scope, uint32_t element)
+{
+    Scene *of = (Scene *)scene;
+    return scope == SCOPE_RUN    ? of->origin
+           : scope == SCOPE_BODY ? of->bodies[element].origin
+                                 : of->sections[element].origin;
+}
+
+const SceneBody *scene_body_of(const Scene *scene, uint32_t section)
+{
+    const SceneBody *body = scene->bodies;
+    while (section >= body->first + body->section_count) ++body;
+    return body;
+}
+
+SectionPlace scene_section_place(const Scene *scene, uint32_t section)
+{
+    SectionPlace place;
+    const SceneBody *body = scene_body_of(scene, section);
+    int length = 0;
+    if (scene->body_count > 1)
+        length = snprintf(place.text, sizeof place.text, "bodies[%u].",
+                          (unsigned)(body - scene->bodies));
+    snprintf(place.text + length, sizeof place.text - (size_t)length, "sections[%u]",
+             section - body->first);
+    return place;
+}
+
+// --- Checks.
 
 static Result check_frames(const RunParams *run, Error *error)
 {
@@ -200,10 +251,16 @@ static Result check_head(const Scene *scene, Error *error)
     const int most = 1000000;
     int frames = scene->run.frames < most ? scene->run.frames : most;
     Result result = RESULT_OK;
-    if (rigid_track_is_still(&scene->head)) return RESULT_OK;
-    for (int frame = 0; frame < frames && result == RESULT_OK; ++frame)
-        result = rigid_track_check(&scene->head, frame / (double)scene->run.fps, error);
-    return result == RESULT_OK ? RESULT_OK : error_prefix(error, result, "head.");
+    for (uint32_t i = 0; i < scene->body_count; ++i) {
+        const RigidTrack *head = &scene->bodies[i].head;
+        for (int frame = 0; !rigid_track_is_still(head) && frame < frames; ++frame) {
+            result = rigid_track_check(head, frame / (double)scene->run.fps, error);
+            if (result == RESULT_OK) continue;
+            error_prefix(error, result, "head.");
+            return scene->body_count == 1 ? result : error_prefix(error, result, "bodies[%u].", i);
+        }
+    }
+    return result;
 }
 
 // Does the same for the formulas of sections.
@@ -215,7 +272,8 @@ static Result check_tracks(const Scene *scene, Error *error)
         for (int frame = 0; frame < frames && scene->sections[i].tracks.count; ++frame) {
             double time = frame * (double)scene->run.speed / (double)scene->run.fps;
             Result result = section_tracks_check(&scene->sections[i].tracks, time, error);
-            if (result != RESULT_OK) return error_prefix(error, result, "sections[%u].", i);
+            if (result != RESULT_OK)
+                return error_prefix(error, result, "%s.", scene_section_place(scene, i).text);
         }
     return RESULT_OK;
 }
@@ -361,12 +419,9 @@ static Result apply_row(Scene *scene, const char *name, const char *value, Error
 {
     const ParamInfo *info = params_find(name);
     size_t row = (size_t)(info - PARAM_TABLE);
-    if (info->scope == SCOPE_RUN)
-        return scene->origin[row] == ORIGIN_DEFAULT ? params_parse(info, &scene->run, value, error)
-                                                    : RESULT_OK;
-    for (uint32_t i = 0; i < scene->section_count; ++i)
-        if (scene->sections[i].origin[row] == ORIGIN_DEFAULT)
-            TRY(params_parse(info, &scene->sections[i].params, value, error));
+    for (uint32_t i = 0; i < scene_count(scene, info->scope); ++i)
+        if (scene_origins(scene, info->scope, i)[row] == ORIGIN_DEFAULT)
+            TRY(params_parse(info, scene_params(scene, info->scope, i), value, error));
     return RESULT_OK;
 }
 
@@ -399,6 +454,8 @@ Result scene_create_as(Scene *scene, const Presets *presets, Error *error)
 {
     *scene = (Scene){0};
     TRY(params_create_run(&scene->run, error));
+    TRY(params_create_body(&scene->bodies[0].params, error));
+    scene->body_count = 1;
     TRY(scene_apply_presets(presets, SCOPE_RUN, &scene->run, error));
     scene_set_lights(scene);
     return RESULT_OK;

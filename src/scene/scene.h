@@ -62,7 +62,7 @@ typedef struct Light {
     bool shadow;                // casts shadows, if shadows are on
 } Light;
 
-enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024 };
+enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024, SCENE_MAX_BODIES = 16 };
 
 // What the command line asks for. After anything but REQUEST_RUN the rest of the scene is
 // unfinished; answer the request and stop.
@@ -78,6 +78,18 @@ typedef struct GivenMesh {
     bool deforms; // moved by body_drive
 } GivenMesh;
 
+// A head or another body: its mesh, how it moves, and the hair on it. Hair moves, collides and is
+// sheltered from wind as if its own body were alone; all bodies are drawn together.
+typedef struct SceneBody {
+    BodyParams params;
+    uint8_t origin[SCENE_PARAMS];  // an Origin for each body parameter of the table
+    RigidTrack head;               // moves the roots, the mesh and the colliders of its frame
+    Colliders colliders;           // shapes that its hair must not cross
+    const GivenMesh *given_mesh;   // a mesh from memory instead of params.mesh; not owned
+    const Body *shape;             // the deforming mesh, set by assets_load; NULL if none
+    uint32_t first, section_count; // its sections, one behind the other
+} SceneBody;
+
 // A zeroed scene is empty and may be destroyed.
 typedef struct Scene {
     SceneRequest request;
@@ -85,18 +97,16 @@ typedef struct Scene {
     char *file;        // owned; the scene file, NULL if none
     RunParams run;
     uint8_t origin[SCENE_PARAMS]; // an Origin for each run parameter of the table
-    Section *sections;            // [section_count], owned
+    SceneBody bodies[SCENE_MAX_BODIES];
+    uint32_t body_count;
+    Section *sections; // [section_count], owned; body by body
     uint32_t section_count;
-    RigidTrack head;                // moves the roots and the mesh
-    const GivenMesh *given_mesh;    // a mesh from memory instead of run.mesh; not owned
-    const Body *body;               // the deforming mesh, set by assets_load; NULL if none
     Keyframes gravity;              // width 3, m/s2; without keys, run.gravity
     Keyframes wind;                 // width 3, m/s; without keys, run.wind
     Keyframes eye, target;          // width 3, m; without keys, run.eye and run.target
     Keyframes fov;                  // width 1, deg; without keys, run.fov
     Light lights[SCENE_MAX_LIGHTS]; // those of the look if the user gives none
     bool own_lights;                // the user gives lights, or an empty list
-    Colliders colliders;            // shapes that hair must not cross
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only
 } Scene;
 
@@ -137,9 +147,24 @@ Result scene_open(Scene *scene, const char *const *files, size_t count,
                   const SceneOverrides *overrides, Error *error);
 
 // Sets a parameter as a flag does: of a section, or of all sections if `section` is -1; a parameter
-// of the run for any `section`. Removes the parameter's keyframes or track. Errors of params_parse
-// and colliders_parse.
+// of the run or of all bodies for any `section`. Removes the parameter's keyframes or track. Errors
+// of params_parse and colliders_parse.
 Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *text, Error *error);
+
+// The elements that have a scope's parameters: the run, or all bodies, or all sections; the
+// RunParams, BodyParams or SectionParams of one; and the Origin of each of its rows.
+uint32_t scene_count(const Scene *scene, ParamScope scope);
+void *scene_params(const Scene *scene, ParamScope scope, uint32_t element);
+uint8_t *scene_origins(const Scene *scene, ParamScope scope, uint32_t element);
+
+// The body that a section is on.
+const SceneBody *scene_body_of(const Scene *scene, uint32_t section);
+
+// Where a section stands in the scene file: "sections[2]", "bodies[1].sections[0]".
+typedef struct SectionPlace {
+    char text[48];
+} SectionPlace;
+SectionPlace scene_section_place(const Scene *scene, uint32_t section);
 
 // Whether neither file nor command line set a parameter of the run.
 bool scene_has_default(const Scene *scene, const char *name);
@@ -175,13 +200,13 @@ bool scene_draws_floats(const RunParams *run);
 // JSON_REAL_PRECISION(9). The caller owns the reference; NULL when memory is short.
 json_t *scene_to_json(const Scene *scene);
 
-// Creates a run with defaults, the default lights and no section. RESULT_FAILED when memory is
-// short; the scene may be destroyed in either case.
+// Creates a run with defaults, the default lights, one body and no section. RESULT_FAILED when
+// memory is short; the scene may be destroyed in either case.
 Result scene_create(Scene *scene, Error *error);
 void scene_destroy(Scene *scene);
 
-// Appends a section with copies of `file` and `params`. RESULT_USAGE beyond SCENE_MAX_SECTIONS,
-// RESULT_FAILED when memory is short.
+// Appends a section of the last body with copies of `file` and `params`. RESULT_USAGE beyond
+// SCENE_MAX_SECTIONS, RESULT_FAILED when memory is short.
 Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error);
 
 // Sets the fields of `params` (a RunParams or SectionParams, depending on the scope) to the

@@ -13,20 +13,30 @@ typedef struct Part {
     Result (*read)(Scene *scene, const JsonPlace *place, const json_t *value, Error *error);
 } Part;
 
-static Result read_colliders(Scene *scene, const JsonPlace *place, const json_t *value,
-                             Error *error)
-{
-    return colliders_from_json(&scene->colliders, place, value, error);
-}
-
-static const Part PARTS[] = {{"head", scene_tracks_read_head},
-                             {"camera", scene_tracks_read_camera},
-                             {"lights", scene_tracks_read_lights},
-                             {"colliders", read_colliders}};
+static const Part PARTS[] = {{"camera", scene_tracks_read_camera},
+                             {"lights", scene_tracks_read_lights}};
 enum { PART_COUNT = sizeof PARTS / sizeof PARTS[0] };
 
-// Path or address of the file's JSON schema, for editors; ignored here.
-static const char SCHEMA_KEY[] = "$schema";
+// The objects of a scene file that have parameters. A file with one body may leave out the list of
+// bodies: the top level has its keys, then.
+typedef enum Level { LEVEL_TOP, LEVEL_BODY, LEVEL_SECTION } Level;
+
+static const struct {
+    const char *name;     // as messages call it
+    const char *keys[4];  // that are no parameters
+    ParamScope outermost; // whose parameters it may have
+} LEVELS[] = {
+    [LEVEL_TOP] = {"the top level", {"bodies", "sections", "head", "$schema"}, SCOPE_RUN},
+    [LEVEL_BODY] = {"a body", {"sections", "head"}, SCOPE_BODY},
+    [LEVEL_SECTION] = {"a section", {"file"}, SCOPE_SECTION},
+};
+enum { LEVEL_KEYS = sizeof LEVELS->keys / sizeof *LEVELS->keys };
+
+// Whether an object may have this parameter: the top level those of all scopes, as defaults.
+static bool may_have(Level level, const ParamInfo *info)
+{
+    return level == LEVEL_TOP || info->scope == LEVELS[level].outermost;
+}
 
 // The file being read. `root` is its place; `folder` is the part of its path up to and including
 // the last '/', or "".
@@ -37,34 +47,36 @@ typedef struct Document {
     const SceneOverrides *overrides;
 } Document;
 
-// The keys that an object of the file may have, terminated by NULL; the caller frees the array. The
-// top level may have parameters of both scopes, sections only their own.
-static const char **list_keys(bool top)
+// The keys that an object of the file may have, terminated by NULL; the caller frees the array.
+static const char **list_keys(Level level)
 {
-    const char **names = calloc(2 * PARAM_COUNT + PART_COUNT + 3, sizeof names[0]);
+    const char **names = calloc(2 * PARAM_COUNT + PART_COUNT + LEVEL_KEYS + 1, sizeof names[0]);
     size_t count = 0;
     if (!names) return NULL;
     for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        if (!top && info->scope != SCOPE_SECTION) continue;
+        if (!may_have(level, info)) continue;
         names[count++] = info->name;
         if (params_also(info)) names[count++] = params_also(info);
     }
-    for (size_t i = 0; top && i < PART_COUNT; i++) names[count++] = PARTS[i].key;
-    names[count++] = top ? "sections" : "file";
-    if (top) names[count] = SCHEMA_KEY;
+    for (size_t i = 0; level == LEVEL_TOP && i < PART_COUNT; i++) names[count++] = PARTS[i].key;
+    for (size_t i = 0; i < LEVEL_KEYS && LEVELS[level].keys[i]; i++)
+        names[count++] = LEVELS[level].keys[i];
     return names;
 }
 
-static Result check_keys(bool top, const JsonPlace *place, const json_t *object, Error *error)
+static Result check_keys(Level level, const JsonPlace *place, const json_t *object, Error *error)
 {
-    for (size_t i = 0; !top && i < PARAM_COUNT; i++) {
+    for (size_t i = 0; i < PARAM_COUNT; i++) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        if (info->scope == SCOPE_RUN && json_object_get(object, info->name))
-            return json_fail(place, error, "'%s' belongs to the top level, not to a section",
-                             info->name);
+        if (!may_have(level, info) && json_object_get(object, info->name))
+            return json_fail(place, error, "'%s' belongs to the top level%s, not to %s", info->name,
+                             info->scope == SCOPE_RUN    ? ""
+                             : info->scope == SCOPE_BODY ? " or to a body"
+                                                         : " or to a section",
+                             LEVELS[level].name);
     }
-    const char **names = list_keys(top);
+    const char **names = list_keys(level);
     if (!names) return error_set(error, RESULT_FAILED, "out of memory");
     Result result = json_check_object(place, object, names, error);
     free(names);
@@ -82,11 +94,19 @@ typedef struct Sink {
     ParamScope scope;
     void *params;
     uint8_t *origin;       // [SCENE_PARAMS]
-    SectionTracks *tracks; // of a section; NULL for the run
+    SectionTracks *tracks; // of a section; otherwise NULL
+    Colliders *colliders;  // of a body; otherwise NULL
 } Sink;
 
+static Result read_colliders(Colliders *colliders, const JsonPlace *place, const json_t *value,
+                             Error *error)
+{
+    colliders_destroy(colliders);
+    return colliders_from_json(colliders, place, value, error);
+}
+
 // Reads the parameters of one scope from the members of `object`. The caller reads keyframes of
-// forces and the list of colliders.
+// forces.
 static Result read_params(const Document *document, const Sink *sink, Origin origin,
                           const JsonPlace *parent, const json_t *object, Error *error)
 {
@@ -102,7 +122,7 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
         }
         const json_t *value = json_object_get(object, key);
         bool keys = json_is_object(value) && is_force(info->name);
-        bool list = json_is_array(value) && strcmp(info->name, "colliders") == 0;
+        bool shapes = strcmp(info->name, "colliders") == 0;
         if (info->scope != sink->scope || !value) continue;
         sink->origin[i] = (uint8_t)origin;
         JsonPlace place = {.parent = parent, .key = key};
@@ -111,7 +131,8 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
             continue;
         }
         if (sink->tracks) section_tracks_drop(sink->tracks, info);
-        if (!keys && !list)
+        if (shapes) TRY(read_colliders(sink->colliders, &place, value, error));
+        if (!keys && !(shapes && json_is_array(value)))
             TRY(scene_param_read(info, sink->params, document->folder, &place, value, error));
     }
     return RESULT_OK;
@@ -120,7 +141,7 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
 static Result read_section(Scene *scene, const Document *document, const Section *defaults,
                            const JsonPlace *place, const json_t *object, Error *error)
 {
-    TRY(check_keys(false, place, object, error));
+    TRY(check_keys(LEVEL_SECTION, place, object, error));
     const json_t *file = json_object_get(object, "file");
     if (!file) return json_fail(place, error, "expected a key 'file'");
     JsonPlace file_place = {.parent = place, .key = "file"};
@@ -132,7 +153,7 @@ static Result read_section(Scene *scene, const Document *document, const Section
     free(path);
     if (result != RESULT_OK) return result;
     Section *section = &scene->sections[scene->section_count - 1];
-    const Sink sink = {SCOPE_SECTION, &section->params, section->origin, &section->tracks};
+    const Sink sink = {SCOPE_SECTION, &section->params, section->origin, &section->tracks, NULL};
     TRY(section_tracks_copy(&section->tracks, &defaults->tracks, error));
     memcpy(section->origin, defaults->origin, sizeof section->origin);
     return read_params(document, &sink, ORIGIN_KEY, place, object, error);
@@ -145,21 +166,38 @@ static bool is_owned(const ParamInfo *info, const Section *section, const char *
     return params_owned_by(info, section->params.algo) || (asked && params_owned_by(info, asked));
 }
 
-static Result check_owner(const Scene *scene, const Document *document, size_t row,
-                          const JsonPlace *sections, Error *error)
+// Where a section stands: the last of `place`, each the parent of the next.
+typedef struct PlaceOfSection {
+    JsonPlace bodies, body, sections, section;
+} PlaceOfSection;
+
+static void find_place(PlaceOfSection *place, const Scene *scene, const Document *document,
+                       uint32_t section)
+{
+    const SceneBody *body = scene_body_of(scene, section);
+    bool listed = json_object_get(document->json, "bodies");
+    place->bodies = (JsonPlace){.parent = &document->root, .key = "bodies"};
+    place->body = (JsonPlace){.parent = &place->bodies, .index = (size_t)(body - scene->bodies)};
+    place->sections =
+        (JsonPlace){.parent = listed ? &place->body : &document->root, .key = "sections"};
+    place->section = (JsonPlace){.parent = &place->sections, .index = section - body->first};
+}
+
+static Result check_owner(const Scene *scene, const Document *document, size_t row, Error *error)
 {
     const ParamInfo *info = &PARAM_TABLE[row];
     const char *asked = document->overrides->algo;
     bool shared = false, owned = false;
-    JsonPlace place = {.parent = &document->root, .key = info->name}, element;
+    JsonPlace place = {.parent = &document->root, .key = info->name};
     for (uint32_t i = 0; i < scene->section_count; i++) {
         const Section *section = &scene->sections[i];
         bool own = is_owned(info, section, asked);
-        element = (JsonPlace){.parent = sections, .index = i};
         shared = shared || section->origin[row] == ORIGIN_SHARED_KEY;
         owned = owned || own;
         if (own || section->origin[row] != ORIGIN_KEY) continue;
-        place.parent = &element;
+        PlaceOfSection of;
+        find_place(&of, scene, document, i);
+        place.parent = &of.section;
         json_fail(&place, error, "algo '%.60s' has no such parameter: it is of %s",
                   section->params.algo, info->owner);
         return RESULT_USAGE;
@@ -187,29 +225,95 @@ static Presets find_presets(const Document *document)
                      find_word(document, "quality", asked->quality)};
 }
 
-// Section parameters at the top level are defaults for all sections.
-static Result read_sections(Scene *scene, const Document *document, Error *error)
+// The sections of an object whose place is `of`: the last body's.
+static Result read_sections(Scene *scene, const Document *document, const Section *defaults,
+                            const JsonPlace *of, const json_t *object, Error *error)
 {
-    const json_t *array = json_object_get(document->json, "sections");
-    if (!array) return json_fail(&document->root, error, "expected a key 'sections'");
-    JsonPlace place = {.parent = &document->root, .key = "sections"};
+    const json_t *array = json_object_get(object, "sections");
+    if (!array) return json_fail(of, error, "expected a key 'sections'");
+    JsonPlace place = {.parent = of, .key = "sections"};
     size_t count = json_array_size(array);
     if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
         return json_refuse(&place, array, "an array of 1 to 1024 sections", error);
-    Section defaults = {0};
-    const Sink sink = {SCOPE_SECTION, &defaults.params, defaults.origin, &defaults.tracks};
-    const Presets presets = find_presets(document);
-    Result result = params_create_section(&defaults.params, error);
-    THEN(result, scene_apply_presets(&presets, SCOPE_SECTION, &defaults.params, error));
-    THEN(result,
-         read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
     for (size_t i = 0; i < count; i++) {
         JsonPlace element = {.parent = &place, .index = i};
-        THEN(result,
-             read_section(scene, document, &defaults, &element, json_array_get(array, i), error));
+        TRY(read_section(scene, document, defaults, &element, json_array_get(array, i), error));
     }
-    for (size_t i = 0; i < PARAM_COUNT; i++)
-        THEN(result, check_owner(scene, document, i, &place, error));
+    return RESULT_OK;
+}
+
+static Result read_head(SceneBody *body, const JsonPlace *of, const json_t *object, Error *error)
+{
+    const json_t *value = json_object_get(object, "head");
+    const JsonPlace place = {.parent = of, .key = "head"};
+    return value ? scene_tracks_read_head(&body->head, &place, value, error) : RESULT_OK;
+}
+
+// A body of the list; `first` has the top level's parameters, which are the defaults of each.
+static Result read_body(Scene *scene, const Document *document, const SceneBody *first,
+                        const Section *defaults, const JsonPlace *place, const json_t *object,
+                        Error *error)
+{
+    SceneBody *body = &scene->bodies[scene->body_count - 1];
+    const Sink sink = {SCOPE_BODY, &body->params, body->origin, NULL, &body->colliders};
+    TRY(check_keys(LEVEL_BODY, place, object, error));
+    TRY(params_copy_body(&body->params, &first->params, error));
+    memcpy(body->origin, first->origin, sizeof body->origin);
+    for (uint32_t i = 0; i < first->colliders.count; ++i)
+        TRY(colliders_add(&body->colliders, &first->colliders.list[i], error));
+    TRY(read_params(document, &sink, ORIGIN_KEY, place, object, error));
+    TRY(read_head(body, place, object, error));
+    return read_sections(scene, document, defaults, place, object, error);
+}
+
+static Result read_list(Scene *scene, const Document *document, const json_t *array,
+                        const Section *defaults, Error *error)
+{
+    static const char *const BESIDE[] = {"sections", "head"};
+    JsonPlace place = {.parent = &document->root, .key = "bodies"};
+    size_t count = json_array_size(array);
+    if (!json_is_array(array) || count == 0 || count > SCENE_MAX_BODIES)
+        return json_refuse(&place, array, "an array of 1 to 16 bodies", error);
+    for (size_t i = 0; i < sizeof BESIDE / sizeof *BESIDE; i++)
+        if (json_object_get(document->json, BESIDE[i]))
+            return json_fail(&document->root, error, "'%s' beside 'bodies': expected it in a body",
+                             BESIDE[i]);
+    SceneBody first = scene->bodies[0];
+    scene->bodies[0] = (SceneBody){0};
+    Result result = RESULT_OK;
+    for (size_t i = 0; i < count && result == RESULT_OK; i++) {
+        JsonPlace element = {.parent = &place, .index = i};
+        scene->body_count = (uint32_t)i + 1;
+        result =
+            read_body(scene, document, &first, defaults, &element, json_array_get(array, i), error);
+    }
+    params_destroy_body(&first.params);
+    colliders_destroy(&first.colliders);
+    return result;
+}
+
+// Parameters at the top level are the defaults of every body and section.
+static Result read_bodies(Scene *scene, const Document *document, Error *error)
+{
+    SceneBody *body = &scene->bodies[0];
+    Section defaults = {0};
+    const json_t *list = json_object_get(document->json, "bodies");
+    const Sink bodies = {SCOPE_BODY, &body->params, body->origin, NULL, &body->colliders},
+               sections = {SCOPE_SECTION, &defaults.params, defaults.origin, &defaults.tracks,
+                           NULL};
+    const JsonPlace *root = &document->root;
+    const Presets presets = find_presets(document);
+    Result result = read_params(document, &bodies, ORIGIN_SHARED_KEY, root, document->json, error);
+    THEN(result, params_create_section(&defaults.params, error));
+    THEN(result, scene_apply_presets(&presets, SCOPE_SECTION, &defaults.params, error));
+    THEN(result, read_params(document, &sections, ORIGIN_SHARED_KEY, root, document->json, error));
+    if (list) {
+        THEN(result, read_list(scene, document, list, &defaults, error));
+    } else {
+        THEN(result, read_head(body, root, document->json, error));
+        THEN(result, read_sections(scene, document, &defaults, root, document->json, error));
+    }
+    for (size_t i = 0; i < PARAM_COUNT; i++) THEN(result, check_owner(scene, document, i, error));
     params_destroy_section(&defaults.params);
     section_tracks_destroy(&defaults.tracks);
     return result;
@@ -249,18 +353,19 @@ static Result read_parts(Scene *scene, const Document *document, Error *error)
 static Result read_document(Scene *scene, const Document *document, Error *error)
 {
     const Presets presets = find_presets(document);
-    TRY(check_keys(true, &document->root, document->json, error));
-    const json_t *schema = json_object_get(document->json, SCHEMA_KEY);
-    const JsonPlace schema_place = {.parent = &document->root, .key = SCHEMA_KEY};
+    TRY(check_keys(LEVEL_TOP, &document->root, document->json, error));
+    // For editors: the path or address of the file's JSON schema, ignored here.
+    const json_t *schema = json_object_get(document->json, "$schema");
+    const JsonPlace schema_place = {.parent = &document->root, .key = "$schema"};
     if (schema && !json_is_string(schema))
         return json_refuse(&schema_place, schema, "a string: the schema's path", error);
     TRY(scene_apply_presets(&presets, SCOPE_RUN, &scene->run, error));
-    const Sink sink = {SCOPE_RUN, &scene->run, scene->origin, NULL};
+    const Sink sink = {SCOPE_RUN, &scene->run, scene->origin, NULL, NULL};
     int look = scene->run.look, quality = scene->run.quality;
     TRY(read_params(document, &sink, ORIGIN_SHARED_KEY, &document->root, document->json, error));
     scene->run.look = look;
     scene->run.quality = quality;
-    TRY(read_sections(scene, document, error));
+    TRY(read_bodies(scene, document, error));
     return read_parts(scene, document, error);
 }
 

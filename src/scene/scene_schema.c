@@ -460,35 +460,83 @@ static json_t *explain(const char *const (*keys)[3], const char *name)
     return json_string(line);
 }
 
-static json_t *definitions(const SchemaSolver *solvers, const RunParams *run,
-                           const SectionParams *own)
+static json_t *list_of(const char *object, int most)
 {
+    return json_pack("{s:s, s:o, s:i, s:i}", "type", "array", "items", reference(object),
+                     "minItems", 1, "maxItems", most);
+}
+
+// A key that is no parameter, with the help's text.
+typedef struct SchemaPart {
+    const char *key;
+    json_t *value;
+} SchemaPart;
+
+static void put_parts(json_t *properties, const SchemaPart *parts, size_t count,
+                      const char *const (*keys)[3], bool *good)
+{
+    for (size_t i = 0; i < count; ++i) {
+        put(parts[i].value, "description", explain(keys, parts[i].key), good);
+        put(properties, parts[i].key, parts[i].value, good);
+    }
+}
+
+// What a body of the list has, and a file without the list at its top level.
+static void put_body_parts(json_t *properties, const char *const (*keys)[3], bool *good)
+{
+    const SchemaPart parts[] = {
+        {"sections", list_of("sectionObject", SCENE_MAX_SECTIONS)},
+        {"head", head_track()},
+        {"colliders", colliders()},
+    };
+    put_parts(properties, parts, sizeof parts / sizeof *parts, keys, good);
+}
+
+static json_t *body(const char *const (*keys)[3])
+{
+    json_t *properties = json_object();
+    bool good = properties;
+    put_body_parts(properties, keys, &good);
+    for (size_t i = 0; i < PARAM_COUNT; ++i)
+        if (is_key(&PARAM_TABLE[i]) && PARAM_TABLE[i].scope == SCOPE_BODY)
+            put_param(properties, &PARAM_TABLE[i], &good);
+    json_t *object = closed(properties);
+    put(object, "required", json_pack("[s]", "sections"), &good);
+    return finish(object, good);
+}
+
+// The defaults of each scope's parameters.
+typedef struct SchemaDefaults {
+    RunParams run;
+    BodyParams body;
+    SectionParams section;
+} SchemaDefaults;
+
+static json_t *definitions(const SchemaSolver *solvers, const char *const (*keys)[3],
+                           const SchemaDefaults *defaults)
+{
+    const void *const of[] = {[SCOPE_RUN] = &defaults->run,
+                              [SCOPE_BODY] = &defaults->body,
+                              [SCOPE_SECTION] = &defaults->section};
     json_t *all = json_object();
     bool good = all;
     put(all, "colorValue", color(), &good);
     put(all, "forceTrack", force_track(), &good);
     put(all, "sectionObject", section(solvers), &good);
+    put(all, "bodyObject", body(keys), &good);
     for (size_t i = 0; i < PARAM_COUNT; ++i) {
         const ParamInfo *info = &PARAM_TABLE[i];
-        const void *defaults = info->scope == SCOPE_RUN ? (const void *)run : own;
-        if (is_key(info)) put(all, info->name, parameter(info, solvers, defaults), &good);
+        if (is_key(info)) put(all, info->name, parameter(info, solvers, of[info->scope]), &good);
     }
     return finish(all, good);
 }
 
 static json_t *top(const char *const (*keys)[3])
 {
-    const struct {
-        const char *key;
-        json_t *value;
-    } parts[] = {
-        {"sections",
-         json_pack("{s:s, s:o, s:i, s:i}", "type", "array", "items", reference("sectionObject"),
-                   "minItems", 1, "maxItems", SCENE_MAX_SECTIONS)},
-        {"head", head_track()},
+    const SchemaPart parts[] = {
+        {"bodies", list_of("bodyObject", SCENE_MAX_BODIES)},
         {"camera", camera_track()},
         {"lights", lights()},
-        {"colliders", colliders()},
     };
     json_t *properties = json_object();
     bool good = properties;
@@ -496,38 +544,45 @@ static json_t *top(const char *const (*keys)[3])
         json_pack("{s:s, s:s}", "type", "string", "description",
                   "path or address of this schema, for editors; ignored otherwise"),
         &good);
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
-        put(parts[i].value, "description", explain(keys, parts[i].key), &good);
-        put(properties, parts[i].key, parts[i].value, &good);
-    }
+    put_body_parts(properties, keys, &good);
+    put_parts(properties, parts, sizeof parts / sizeof *parts, keys, &good);
     for (size_t i = 0; i < PARAM_COUNT; ++i)
         if (is_key(&PARAM_TABLE[i])) put_param(properties, &PARAM_TABLE[i], &good);
     return finish(properties, good);
 }
 
+// Sections at the top level, or a list of bodies that have them.
+static json_t *one_or_several(void)
+{
+    return json_pack("[{s:[s], s:{s:b}}, {s:[s], s:{s:b, s:b}}]", "required", "sections",
+                     "properties", "bodies", 0, "required", "bodies", "properties", "sections", 0,
+                     "head", 0);
+}
+
 Result scene_schema_write(const SchemaSolver *solvers, const char *const (*keys)[3], FILE *stream,
                           Error *error)
 {
-    RunParams run;
-    SectionParams own = {0};
-    Result result = params_create_run(&run, error);
-    THEN(result, params_create_section(&own, error));
+    SchemaDefaults own = {0};
+    Result result = params_create_run(&own.run, error);
+    THEN(result, params_create_body(&own.body, error));
+    THEN(result, params_create_section(&own.section, error));
     json_t *schema = NULL;
     if (result == RESULT_OK)
         schema = json_pack(
-            "{s:s, s:s, s:s, s:s, s:[s], s:b, s:o, s:o}", "$schema",
+            "{s:s, s:s, s:s, s:s, s:o, s:b, s:o, s:o}", "$schema",
             "http://json-schema.org/draft-07/schema#", "title", "Tractrix scene", "description",
             "A scene of tractrix-render: hair files, how they move and how they "
             "look. Made by tractrix-render --help schema.",
-            "type", "object", "required", "sections", "additionalProperties", 0, "properties",
-            top(keys), "definitions", definitions(solvers, &run, &own));
+            "type", "object", "oneOf", one_or_several(), "additionalProperties", 0, "properties",
+            top(keys), "definitions", definitions(solvers, keys, &own));
     char *lines = json_text(schema, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     if (lines) fprintf(stream, "%s\n", lines);
     if (!lines && result == RESULT_OK)
         result = error_set(error, RESULT_FAILED, "no memory for the schema");
     free(lines);
     json_decref(schema);
-    params_destroy_run(&run);
-    params_destroy_section(&own);
+    params_destroy_run(&own.run);
+    params_destroy_body(&own.body);
+    params_destroy_section(&own.section);
     return result;
 }

@@ -24,19 +24,27 @@ static void drop_keyframes(Scene *scene, const char *name)
 // Sets a parameter of the run. An invalid value changes nothing.
 static Result set_run(Scene *scene, const ParamInfo *info, const char *text, Error *error)
 {
+    TRY(params_parse(info, &scene->run, text, error));
+    drop_keyframes(scene, info->name);
+    scene->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
+    return RESULT_OK;
+}
+
+// What is refused changes nothing.
+static Result set_body(SceneBody *body, const ParamInfo *info, const char *text, Error *error)
+{
     bool shapes = strcmp(info->name, "colliders") == 0;
     Colliders colliders = {0};
     Result result = shapes ? colliders_parse(&colliders, text, error) : RESULT_OK;
-    THEN(result, params_parse(info, &scene->run, text, error));
+    THEN(result, params_parse(info, &body->params, text, error));
     if (result != RESULT_OK) {
         colliders_destroy(&colliders);
         return result;
     }
-    drop_keyframes(scene, info->name);
-    scene->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
+    body->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
     if (!shapes) return RESULT_OK;
-    colliders_destroy(&scene->colliders);
-    scene->colliders = colliders;
+    colliders_destroy(&body->colliders);
+    body->colliders = colliders;
     return RESULT_OK;
 }
 
@@ -51,6 +59,9 @@ static Result set_section(Section *section, const ParamInfo *info, const char *t
 Result scene_set(Scene *scene, int section, const ParamInfo *info, const char *text, Error *error)
 {
     if (info->scope == SCOPE_RUN) return set_run(scene, info, text, error);
+    for (uint32_t i = 0; info->scope == SCOPE_BODY && i < scene->body_count; i++)
+        TRY(set_body(&scene->bodies[i], info, text, error));
+    if (info->scope == SCOPE_BODY) return RESULT_OK;
     if (section >= 0) return set_section(&scene->sections[section], info, text, error);
     for (uint32_t i = 0; i < scene->section_count; i++)
         TRY(set_section(&scene->sections[i], info, text, error));

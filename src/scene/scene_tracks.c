@@ -162,27 +162,26 @@ static Result read_formulas(Formula formulas[3], const char *name, const Keyfram
     return RESULT_OK;
 }
 
-static Result read_head_keys(Scene *scene, const JsonPlace *place, const json_t *value,
+static Result read_head_keys(RigidTrack *head, const JsonPlace *place, const json_t *value,
                              Error *error)
 {
     const Member members[] = {
-        {"translate", &scene->head.translation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, 1.0, false},
-        {"rotate", &scene->head.rotation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, DEGREE, false},
+        {"translate", &head->translation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, 1.0, false},
+        {"rotate", &head->rotation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, DEGREE, false},
     };
     bool by_formula = json_object_get(value, "translate") || json_object_get(value, "rotate");
     if (by_formula && !json_object_get(value, "keys")) return RESULT_OK;
     return read_track(members, 2, place, value, error);
 }
 
-Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,
+Result scene_tracks_read_head(RigidTrack *head, const JsonPlace *place, const json_t *value,
                               Error *error)
 {
     static const char *const NAMES[] = {"keys",      "interpolation", "pivot",
                                         "translate", "rotate",        NULL};
-    RigidTrack *head = &scene->head;
     TRY(json_check_object(place, value, NAMES, error));
     TRY(read_vector(head->pivot, place, value, "pivot", false, error));
-    TRY(read_head_keys(scene, place, value, error));
+    TRY(read_head_keys(head, place, value, error));
     TRY(read_formulas(head->translation_formula, "translate", &head->translation, place, value,
                       error));
     return read_formulas(head->rotation_formula, "rotate", &head->rotation, place, value, error);

@@ -16,7 +16,7 @@
 
 // Each function reads the value of the key with its name in the scene file; run/render_help.c
 // documents them. RESULT_BAD_INPUT with the place, RESULT_FAILED when memory is short.
-Result scene_tracks_read_head(Scene *scene, const JsonPlace *place, const json_t *value,
+Result scene_tracks_read_head(RigidTrack *head, const JsonPlace *place, const json_t *value,
                               Error *error);
 Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json_t *value,
                                 Error *error);

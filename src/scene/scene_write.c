@@ -109,9 +109,8 @@ static json_t *write_formulas(const Formula *formulas)
     return finish(array, good);
 }
 
-static bool write_head(json_t *object, const Scene *scene)
+static bool write_head(json_t *object, const RigidTrack *track)
 {
-    const RigidTrack *track = &scene->head;
     Track tracks[] = {
         {.name = "translate", .keys = &track->translation, .scale = 1.0},
         {.name = "rotate", .keys = &track->rotation, .scale = 1.0 / DEGREE},
@@ -183,11 +182,11 @@ static bool write_params(json_t *object, ParamScope scope, const void *params, c
     return good;
 }
 
-static bool write_sections(json_t *object, const Scene *scene)
+static bool write_sections(json_t *object, const Scene *scene, const SceneBody *body)
 {
     json_t *array = json_array();
     bool good = true;
-    for (uint32_t i = 0; i < scene->section_count; i++) {
+    for (uint32_t i = body->first; i < body->first + body->section_count; i++) {
         json_t *section = json_object();
         good = put(section, "file", scene_param_write_text(scene->sections[i].file)) && good;
         const SectionParams *params = &scene->sections[i].params;
@@ -199,17 +198,37 @@ static bool write_sections(json_t *object, const Scene *scene)
     return put(object, "sections", array) && good;
 }
 
+static bool write_body(json_t *object, const Scene *scene, const SceneBody *body)
+{
+    bool good = write_params(object, SCOPE_BODY, &body->params, "", &(SectionTracks){0});
+    good = write_head(object, &body->head) && good;
+    if (body->colliders.count)
+        good = put(object, "colliders", colliders_to_json(&body->colliders)) && good;
+    return write_sections(object, scene, body) && good;
+}
+
+static bool write_list(json_t *object, const Scene *scene)
+{
+    json_t *array = json_array();
+    bool good = true;
+    for (uint32_t i = 0; i < scene->body_count; i++) {
+        json_t *body = json_object();
+        good = write_body(body, scene, &scene->bodies[i]) && good;
+        good = json_array_append_new(array, body) == 0 && good;
+    }
+    return put(object, "bodies", array) && good;
+}
+
 json_t *scene_to_json(const Scene *scene)
 {
     json_t *object = json_object();
     bool good = write_params(object, SCOPE_RUN, &scene->run, "", &(SectionTracks){0});
     good = write_force(object, "gravity", &scene->gravity) && good;
     good = write_force(object, "wind", &scene->wind) && good;
-    good = write_head(object, scene) && good;
     good = write_camera(object, scene) && good;
     good = write_lights(object, scene) && good;
-    if (scene->colliders.count)
-        good = put(object, "colliders", colliders_to_json(&scene->colliders)) && good;
-    good = write_sections(object, scene) && good;
+    good = (scene->body_count == 1 ? write_body(object, scene, &scene->bodies[0])
+                                   : write_list(object, scene)) &&
+           good;
     return finish(object, good);
 }

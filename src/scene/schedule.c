@@ -23,6 +23,16 @@ double schedule_period_rate(const RunParams *run)
     return (double)run->fps / (run->speed > 0 ? (double)run->speed : 1);
 }
 
+SectionParams schedule_greatest_params(const RunParams *run, const Section *section)
+{
+    const int most = 10000;
+    int frames = run->frames < most ? run->frames : most;
+    SectionParams params = section->params;
+    section_tracks_greatest(&section->tracks, schedule_frame_time(run, run->frames), frames + 1,
+                            &params);
+    return params;
+}
+
 Schedule schedule_create(const RunParams *run, int substeps)
 {
     Schedule schedule = {.steps_per_s = substeps * schedule_period_rate(run)};

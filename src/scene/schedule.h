@@ -31,6 +31,9 @@ double schedule_frame_time(const RunParams *run, double frame);
 // the warm-up.
 double schedule_period_rate(const RunParams *run);
 
+// A section's parameters, each with its greatest value over the whole run.
+SectionParams schedule_greatest_params(const RunParams *run, const Section *section);
+
 // `substeps`: the value of --substeps, or the value found for auto (simulation.h).
 Schedule schedule_create(const RunParams *run, int substeps);
 

@@ -315,12 +315,12 @@ static void fill_start(Float4 *texels, const RigidMotion *motions, const void *d
     texels[2][3] = texels[3][3] = 0;
 }
 
-void bound_set_start(Bound *bound, const Scene *scene)
+void bound_set_start(Bound *bound, const RigidTrack *track)
 {
     double time[3];
     RigidMotion head[3];
     for (int i = 0; i < 3; ++i) {
-        HeadPose pose = head_at(scene, time[i] = i * START_H);
+        HeadPose pose = head_at(track, time[i] = i * START_H);
         head[i] = motion_of(&pose);
     }
     fill(bound, time, 3, 4, fill_start, head, false);

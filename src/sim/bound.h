@@ -59,8 +59,8 @@ typedef struct Bound {
     float (*texels)[4]; // a copy of the buffers: MOST_TEXELS a strand, batch after batch
 } Bound;
 
-// Binds `hair`, the strands of section `section`, to the body. `hair` and `body` must outlive
-// `bound`. Without a body the result is all zero. RESULT_FAILED when memory is short.
+// Binds `hair`, the strands of the body's section `section`, to the body. `hair` and `body` must
+// outlive `bound`. Without a body the result is all zero. RESULT_FAILED when memory is short.
 Result bound_create(Bound *bound, BoundBody *body, uint32_t section, const Hair *hair,
                     const GpuLimits *limits, Error *error);
 void bound_destroy(Bound *bound);
@@ -81,7 +81,7 @@ void bound_set_way(Bound *bound, double from_time, const HeadPose *from, double 
                    const HeadPose *to);
 
 // Fills in the velocities that strands at rest on mesh and head have at time 0, for carry.comp.
-void bound_set_start(Bound *bound, const Scene *scene);
+void bound_set_start(Bound *bound, const RigidTrack *head);
 
 // Binds other points than strands to the mesh: the roots of followers, points[count].
 Result bound_points_create(MeshBinding *binding, BoundBody *body, const float (*points)[3],

@@ -6,10 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-HeadPose head_at(const Scene *scene, double time)
+HeadPose head_at(const RigidTrack *track, double time)
 {
     HeadPose pose = {0};
-    rigid_track_evaluate(&scene->head, time, pose.rotation, pose.translation);
+    rigid_track_evaluate(track, time, pose.rotation, pose.translation);
     return pose;
 }
 
@@ -60,12 +60,12 @@ static void rotation_between(const HeadPose *from, const HeadPose *to, vec3 vect
 
 // One-sided second-order differences, (4 f(h) - f(2h) - 3 f(0))/(2h), because a track may start
 // with a jump of its velocity at time 0.
-bool head_starts_moving(const Scene *scene, HeadMotion *motion)
+bool head_starts_moving(const RigidTrack *track, HeadMotion *motion)
 {
     const double h = 1e-3;
     HeadPose at[3];
     vec3 near = {0}, far = {0}, moved = {0};
-    for (int i = 0; i < 3; ++i) at[i] = head_at(scene, i * h);
+    for (int i = 0; i < 3; ++i) at[i] = head_at(track, i * h);
     rotation_between(&at[0], &at[1], near);
     rotation_between(&at[0], &at[2], far);
     *motion = (HeadMotion){.rotation = {0, 0, 0, 1}};
@@ -81,46 +81,46 @@ bool head_starts_moving(const Scene *scene, HeadMotion *motion)
     return glm_vec3_norm2(motion->velocity) > 0 || glm_vec3_norm2(motion->spin) > 0;
 }
 
-static void pivot_at(const Scene *scene, const HeadPose *pose, vec3 place)
+static void pivot_at(const float pivot[3], const HeadPose *pose, vec3 place)
 {
-    glm_quat_rotatev((float *)pose->rotation, (float *)scene->head.pivot, place);
+    glm_quat_rotatev((float *)pose->rotation, (float *)pivot, place);
     glm_vec3_add((float *)pose->translation, place, place);
 }
 
 // The pose that has made `share` of the turn and of the pivot's move from one pose to the other.
-static HeadPose pose_on_the_way(const Scene *scene, const HeadPose *from, const HeadPose *to,
+static HeadPose pose_on_the_way(const float pivot[3], const HeadPose *from, const HeadPose *to,
                                 float share)
 {
     HeadPose pose = {0};
     vec3 begin = {0}, end = {0}, place = {0}, turned = {0};
-    pivot_at(scene, from, begin);
-    pivot_at(scene, to, end);
+    pivot_at(pivot, from, begin);
+    pivot_at(pivot, to, end);
     glm_quat_slerp((float *)from->rotation, (float *)to->rotation, share, pose.rotation);
     glm_vec3_lerp(begin, end, share, place);
-    glm_quat_rotatev(pose.rotation, (float *)scene->head.pivot, turned);
+    glm_quat_rotatev(pose.rotation, (float *)pivot, turned);
     glm_vec3_sub(place, turned, pose.translation);
     return pose;
 }
 
-bool head_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to, HeadPose *carried)
+bool head_jumps(const RunParams *run, const float pivot[3], const HeadPose *from,
+                const HeadPose *to, HeadPose *carried)
 {
-    const RunParams *run = &scene->run;
     vec3 begin = {0}, end = {0}, turn = {0};
-    pivot_at(scene, from, begin);
-    pivot_at(scene, to, end);
+    pivot_at(pivot, from, begin);
+    pivot_at(pivot, to, end);
     rotation_between(from, to, turn);
     float felt = 1; // the largest share of the motion that respects both limits
     felt = fminf(felt, run->teleport_distance / fmaxf(glm_vec3_distance(begin, end), 1e-30f));
     felt = fminf(felt, glm_rad(run->teleport_angle) / fmaxf(glm_vec3_norm(turn), 1e-30f));
     if (felt >= 1 || run->teleport == TELEPORT_NONE) return false;
-    *carried = run->teleport == TELEPORT_CARRY ? *to : pose_on_the_way(scene, from, to, 1 - felt);
+    *carried = run->teleport == TELEPORT_CARRY ? *to : pose_on_the_way(pivot, from, to, 1 - felt);
     return true;
 }
 
-void head_middle(float middle[3], const Scene *scene, const Strands *strands)
+void head_middle(float middle[3], const Strands *strands, uint32_t count)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < scene->section_count; ++i)
+    for (uint32_t i = 0; i < count; ++i)
         for (uint32_t s = 0; s < strands[i].strand_count; ++s)
             for (int k = 0; k < 3; ++k) {
                 float at = strands[i].position[strands[i].first[s]][k];

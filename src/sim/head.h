@@ -23,7 +23,7 @@ typedef struct HeadMotion {
 } HeadMotion;
 
 // Where the head is at `time` (s).
-HeadPose head_at(const Scene *scene, double time);
+HeadPose head_at(const RigidTrack *track, double time);
 
 // Whether both poses are the same bit for bit.
 bool head_is_same(const HeadPose *a, const HeadPose *b);
@@ -39,14 +39,15 @@ HeadMotion head_motion_between(const HeadPose *from, const HeadPose *to);
 
 // The head's velocity at time 0, which hair at rest on the head has too. False if it is zero;
 // `motion` is then the identity.
-bool head_starts_moving(const Scene *scene, HeadMotion *motion);
+bool head_starts_moving(const RigidTrack *track, HeadMotion *motion);
 
-// The rule of --teleport, for a step in which the head goes from `from` to `to`. True if the pivot
-// moves by more than teleport_distance or the head turns by more than teleport_angle. Hair is then
-// first carried from `from` to `*carried`, and the step begins there: `*carried` is `to` (carry),
-// or differs from `to` by a move of the threshold's size (limit). False: nothing is carried.
-bool head_jumps(const Scene *scene, const HeadPose *from, const HeadPose *to, HeadPose *carried);
+// The rule of --teleport in `run`, for a step in which the head goes from `from` to `to`. True if
+// `pivot` (m, in the head's frame) moves by more than teleport_distance or the head turns by more
+// than teleport_angle. Hair is then first carried from `from` to `*carried`, and the step begins
+// there: `*carried` is `to` (carry), or differs from `to` by a move of the threshold's size
+// (limit). False: nothing is carried.
+bool head_jumps(const RunParams *run, const float pivot[3], const HeadPose *from,
+                const HeadPose *to, HeadPose *carried);
 
-// The middle of the box around the roots of all sections (strands[scene->section_count]), in the
-// head's frame (m).
-void head_middle(float middle[3], const Scene *scene, const Strands *strands);
+// The middle of the box around the roots of all strands[count], in the head's frame (m).
+void head_middle(float middle[3], const Strands *strands, uint32_t count);

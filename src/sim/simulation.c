@@ -2,22 +2,9 @@
 #include "sim/simulation.h"
 #include "scene/forces.h"
 
-#include <libdeflate.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// The greatest value of each parameter over the whole run.
-static SectionParams greatest_params(const Scene *scene, const Section *section)
-{
-    const int most = 10000;
-    int frames = scene->run.frames < most ? scene->run.frames : most;
-    SectionParams params = section->params;
-    section_tracks_greatest(&section->tracks, schedule_frame_time(&scene->run, scene->run.frames),
-                            frames + 1, &params);
-    return params;
-}
 
 // Applies the parameters of a time if the section has tracks. Returns their stamp.
 static uint64_t set_params(Simulation *simulation, SimulationSection *section, double time)
@@ -61,10 +48,10 @@ static Result create_follow_collision(SimulationSection *section, const SolverSe
     return collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
 }
 
-static void write_followers(Simulation *simulation, SimulationSection *section,
-                            const HeadPose *head)
+static void write_followers(const Simulation *simulation, SimulationSection *section)
 {
-    follow_move(&section->follow, &simulation->body, simulation->time);
+    const HeadPose *head = &section->body->head;
+    follow_move(&section->follow, &section->body->mesh, simulation->time);
     follow_write(&section->follow, head);
     collision_push_drawn(&section->follow_collision, head);
 }
@@ -85,20 +72,16 @@ static const SectionParams *take_params(Simulation *simulation, uint32_t i)
     SimulationSection *section = &simulation->sections[i];
     section->params = &from->params;
     if (!from->tracks.count) return section->params;
-    section->now = greatest_params(simulation->scene, from);
+    section->now = schedule_greatest_params(&simulation->scene->run, from);
     return section->params = &section->now;
-}
-
-static const DistanceField *field_of(const Simulation *simulation)
-{
-    if (simulation->moving.work) return &simulation->moving.field;
-    return simulation->field.spacing > 0 ? &simulation->field : NULL;
 }
 
 static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                              const Strands *strands, Error *error)
 {
     SimulationSection *section = &simulation->sections[i];
+    const SceneBody *on = scene_body_of(simulation->scene, i);
+    MovingBody *body = section->body = &simulation->bodies[on - simulation->scene->bodies];
     const SectionParams *start = &simulation->scene->sections[i].params,
                         *params = take_params(simulation, i);
     const SectionTracks *tracks = &simulation->scene->sections[i].tracks;
@@ -109,19 +92,20 @@ static Result create_section(Simulation *simulation, uint32_t i, const Gpu *gpu,
                          .params = params,
                          .start = tracks->count ? start : NULL,
                          .style_changes = section_tracks_has(tracks, params_find("style")),
-                         .colliders = &simulation->scene->colliders,
-                         .field = field_of(simulation),
+                         .colliders = &on->colliders,
+                         .field = moving_body_field(body),
                          .sheltered = run->wind_shelter > 0,
                          .keeps_groom = solver_keeps_groom(params),
-                         .head = &simulation->head};
+                         .head = &body->head};
     if (params->rest == REST_GROOM) find_rest_gravity(setup.rest_gravity, simulation->scene);
     TRY(hair_create(&section->hair, strands, 0, &gpu->limits, error));
-    TRY(bound_create(&section->bound, &simulation->body, i, &section->hair, &gpu->limits, error));
+    TRY(bound_create(&section->bound, &body->mesh, i - on->first, &section->hair, &gpu->limits,
+                     error));
     setup.frames = section->bound.frames;
     TRY(follow_create(&section->follow, gpu, simulation->timer, &section->hair, strands, params,
                       run->seed, error));
-    if (simulation->body.body)
-        TRY(follow_bind(&section->follow, &simulation->body, section->bound.roots, strands, error));
+    if (body->mesh.body)
+        TRY(follow_bind(&section->follow, &body->mesh, section->bound.roots, strands, error));
     TRY(create_follow_collision(section, &setup, error));
     if (*run->from_cache) return RESULT_OK;
     TRY(solver_create(&section->solver, &setup, error));
@@ -149,75 +133,6 @@ static Result create_sections(Simulation *simulation, const Gpu *gpu, const Stra
         set_params(simulation, &simulation->sections[i], 0);
     }
     return RESULT_OK;
-}
-
-static bool collides(const SectionParams *params)
-{
-    return params->collide && strcmp(params->algo, "none") != 0;
-}
-
-static bool any_collides(const Scene *scene)
-{
-    for (uint32_t i = 0; i < scene->section_count; ++i)
-        if (collides(&scene->sections[i].params)) return true;
-    return false;
-}
-
-// Guides from a cache are outside the mesh already, but their followers need the field.
-static bool needs_field(const Scene *scene, const Strands *strands)
-{
-    if (!*scene->run.from_cache) return true;
-    for (uint32_t i = 0; i < scene->section_count; ++i) {
-        const SectionParams *params = &scene->sections[i].params;
-        if (collides(params) && follow_plan_options(params, &strands[i], 0).per_guide > 0)
-            return true;
-    }
-    return false;
-}
-
-void simulation_update_field(Simulation *simulation, double before, double after)
-{
-    if (!simulation->moving.work) return;
-    const BodyPose *from = bound_body_pose(&simulation->body, before),
-                   *to = bound_body_pose(&simulation->body, after);
-    moving_field_update(&simulation->moving, (const float(*)[3])from->position,
-                        (const float(*)[3])to->position);
-}
-
-static Result create_moving_field(Simulation *simulation, const Gpu *gpu, const Strands *strands,
-                                  Error *error)
-{
-    const Scene *scene = simulation->scene;
-    float longest = 0, margin = 0;
-    for (uint32_t i = 0; i < scene->section_count; ++i) {
-        const SectionParams greatest = greatest_params(scene, &scene->sections[i]),
-                            *params = &greatest;
-        if (!collides(params)) continue;
-        margin = fmaxf(margin, params->collision_margin);
-        for (uint32_t s = 0; s < strands[i].strand_count; ++s)
-            longest = fmaxf(longest, (float)strands_length(&strands[i], s));
-    }
-    TRY(moving_field_create(&simulation->moving, gpu, scene->body, longest, margin,
-                            (uint32_t)scene->run.sdf_resolution, error));
-    simulation_update_field(simulation, 0, 0);
-    return RESULT_OK;
-}
-
-static Result create_field(Simulation *simulation, const Gpu *gpu, const Strands *strands,
-                           const Mesh *mesh, Error *error)
-{
-    const RunParams *run = &simulation->scene->run;
-    DistanceField *field = &simulation->field;
-    uint32_t resolution = (uint32_t)run->sdf_resolution;
-    if (!run->collide_mesh || !mesh || !mesh->triangle_count) return RESULT_OK;
-    if (!any_collides(simulation->scene)) return RESULT_OK;
-    uint32_t sum = libdeflate_crc32(0, mesh->position, mesh->vertex_count * sizeof *mesh->position);
-    simulation->mesh_checksum =
-        libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
-    if (!needs_field(simulation->scene, strands)) return RESULT_OK;
-    if (simulation->body.body) return create_moving_field(simulation, gpu, strands, error);
-    return run->sdf_cache ? distance_field_create_cached(field, gpu, mesh, resolution, NULL, error)
-                          : distance_field_create(field, gpu, mesh, resolution, error);
 }
 
 double simulation_stability(const Strands *strands, double g, double dt)
@@ -258,7 +173,7 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
     *substeps = 1;
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const Section *section = &scene->sections[i];
-        const SectionParams params = greatest_params(scene, section);
+        const SectionParams params = schedule_greatest_params(&scene->run, section);
         double limit = solver_most_stability(&params);
         if (!(limit > 0)) continue;
         double sigma = simulation_stability(&strands[i], simulation_acceleration(scene, &params),
@@ -274,20 +189,25 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
     return RESULT_OK;
 }
 
-Result simulation_expect_motion(Simulation *simulation, const Gpu *gpu, Error *error)
+static Result create_bodies(Simulation *simulation, const Gpu *gpu, const Strands *strands,
+                            const Mesh *meshes, Error *error)
 {
-    if (simulation->carry.program) return RESULT_OK;
-    return carry_create(&simulation->carry, &gpu->limits, simulation->scene->body != NULL, error);
+    const Scene *scene = simulation->scene;
+    simulation->bodies = calloc((size_t)scene->body_count + 1, sizeof *simulation->bodies);
+    if (!simulation->bodies)
+        return error_set(error, RESULT_FAILED, "no memory for %u bodies", scene->body_count);
+    for (uint32_t b = 0; b < scene->body_count; ++b)
+        TRY(moving_body_create(&simulation->bodies[b], gpu, scene, b, strands,
+                               meshes ? &meshes[b] : NULL, error));
+    return RESULT_OK;
 }
 
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
-                         const Scene *scene, const Strands *strands, const Mesh *mesh, Error *error)
+                         const Scene *scene, const Strands *strands, const Mesh *meshes,
+                         Error *error)
 {
     const RunParams *run = &scene->run;
-    *simulation = (Simulation){
-        .scene = scene, .timer = timer, .head = head_at(scene, 0), .substeps = run->substeps.value};
-    simulation->step_head = simulation->step_head_before = simulation->head;
-    head_middle(simulation->middle, scene, strands);
+    *simulation = (Simulation){.scene = scene, .timer = timer, .substeps = run->substeps.value};
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < scene->section_count && result == RESULT_OK; ++i)
         result = solver_check(&scene->sections[i].params, error);
@@ -295,11 +215,8 @@ Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer
         THEN(result, simulation_choose_substeps(&simulation->substeps, scene, strands, error));
     simulation->schedule = schedule_create(run, simulation->substeps);
     simulation->step = -simulation->schedule.settling;
-    THEN(result, bound_body_create(&simulation->body, scene->body, error));
-    THEN(result, create_field(simulation, gpu, strands, mesh, error));
+    THEN(result, create_bodies(simulation, gpu, strands, meshes, error));
     THEN(result, create_sections(simulation, gpu, strands, error));
-    if (!rigid_track_is_still(&scene->head))
-        THEN(result, simulation_expect_motion(simulation, gpu, error));
     if (result != RESULT_OK) simulation_destroy(simulation);
     return result;
 }
@@ -317,10 +234,9 @@ void simulation_destroy(Simulation *simulation)
         hair_destroy(&simulation->sections[i].hair);
     }
     free(simulation->sections);
-    distance_field_destroy(&simulation->field);
-    moving_field_destroy(&simulation->moving);
-    carry_destroy(&simulation->carry);
-    bound_body_destroy(&simulation->body);
+    for (uint32_t b = 0; simulation->bodies && b < simulation->scene->body_count; ++b)
+        moving_body_destroy(&simulation->bodies[b]);
+    free(simulation->bodies);
     *simulation = (Simulation){0};
 }
 
@@ -330,22 +246,22 @@ double simulation_step_time(const Simulation *simulation, int64_t step)
 }
 
 // Forces are those at the step's start; roots move to the head's pose at the step's end.
-static SolverStep next_step(const Simulation *simulation)
+static SolverStep next_step(const Simulation *simulation, const MovingBody *body)
 {
     const Scene *scene = simulation->scene;
-    double rate = simulation->schedule.steps_per_s;
+    double rate = simulation->schedule.steps_per_s,
+           before = simulation_step_time(simulation, simulation->step),
+           after = simulation_step_time(simulation, simulation->step + 1);
     Forces forces;
     forces_evaluate(&forces, scene, (double)simulation->step / rate);
     SolverStep step = {
         .dt = 1 / rate,
         .first = simulation->step == -simulation->schedule.settling,
         .number = scene->run.seed + (uint32_t)simulation->step,
-        .head_old = simulation->step_head,
-        .head = head_at(scene, simulation_step_time(simulation, simulation->step + 1)),
-        .shape_old =
-            bound_body_shape(&simulation->body, simulation_step_time(simulation, simulation->step)),
-        .shape = bound_body_shape(&simulation->body,
-                                  simulation_step_time(simulation, simulation->step + 1)),
+        .head_old = body->step_head,
+        .head = head_at(&body->of->head, after),
+        .shape_old = bound_body_shape(&body->mesh, before),
+        .shape = bound_body_shape(&body->mesh, after),
     };
     memcpy(step.gravity, forces.gravity, sizeof step.gravity);
     memcpy(step.wind, forces.wind, sizeof step.wind);
@@ -385,59 +301,67 @@ static void step_section(Simulation *simulation, SimulationSection *section,
 
 // Sets the motion that carries bound strands: to the head pose `to` at the step's end, or, if NULL,
 // the velocities at the start.
-static void set_motions(const Simulation *simulation, Bound *bound, const HeadPose *to)
+static void set_motions(const Simulation *simulation, const MovingBody *body, Bound *bound,
+                        const HeadPose *to)
 {
     if (!bound->body) return;
     if (to)
-        bound_set_way(bound, simulation_step_time(simulation, simulation->step),
-                      &simulation->step_head,
+        bound_set_way(bound, simulation_step_time(simulation, simulation->step), &body->step_head,
                       simulation_step_time(simulation, simulation->step + 1), to);
     else
-        bound_set_start(bound, simulation->scene);
+        bound_set_start(bound, &body->of->head);
 }
 
-static void carry_sections(Simulation *simulation, const HeadMotion *motion, const HeadPose *to)
+static void carry_sections(Simulation *simulation, MovingBody *body, const HeadMotion *motion,
+                           const HeadPose *to)
 {
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
-        SimulationSection *section = &simulation->sections[i];
+    for (uint32_t i = 0; i < body->of->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[body->of->first + i];
         if (solver_is_static(section->solver.type)) continue;
         inbetween_restore(&section->inbetween);
         bound_set_after(&section->bound, simulation_step_time(simulation, simulation->step));
-        solver_pose(&section->solver, &simulation->step_head);
-        set_motions(simulation, &section->bound, to);
-        carry_apply(&simulation->carry, &section->solver, &section->hair, motion,
-                    section->bound.frames);
+        solver_pose(&section->solver, &body->step_head);
+        set_motions(simulation, body, &section->bound, to);
+        carry_apply(&body->carry, &section->solver, &section->hair, motion, section->bound.frames);
     }
 }
 
 // Handles a head that starts to move or jumps at the step's start: the hair is carried along.
-static void carry_along(Simulation *simulation, SolverStep *step)
+static void carry_along(Simulation *simulation, MovingBody *body, SolverStep *step)
 {
+    const RigidTrack *head = &body->of->head;
     HeadMotion motion;
     HeadPose carried;
-    bool starts = simulation->step == 0 && head_starts_moving(simulation->scene, &motion);
-    if (starts || (simulation->step == 0 && simulation->body.body))
-        carry_sections(simulation, &motion, NULL);
-    if (!head_jumps(simulation->scene, &step->head_old, &step->head, &carried)) return;
+    bool starts = simulation->step == 0 && head_starts_moving(head, &motion);
+    if (starts || (simulation->step == 0 && body->mesh.body))
+        carry_sections(simulation, body, &motion, NULL);
+    if (!head_jumps(&simulation->scene->run, head->pivot, &step->head_old, &step->head, &carried))
+        return;
     motion = head_motion_between(&step->head_old, &carried);
-    carry_sections(simulation, &motion, &carried);
+    carry_sections(simulation, body, &motion, &carried);
     step->head_old = carried;
     step->shape_old = step->shape;
     ++simulation->jumps;
 }
 
-static void take_step(Simulation *simulation)
+static void step_body(Simulation *simulation, MovingBody *body)
 {
-    SolverStep step = next_step(simulation);
-    if (simulation->carry.program) carry_along(simulation, &step);
+    SolverStep step = next_step(simulation, body);
+    if (body->carry.program) carry_along(simulation, body, &step);
     double before = simulation_step_time(simulation, simulation->step),
            after = simulation_step_time(simulation, simulation->step + 1);
-    simulation_update_field(simulation, step.shape_old == step.shape ? after : before, after);
-    step_shelter(&step, simulation->middle, simulation->scene->run.wind_shelter);
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
-        step_section(simulation, &simulation->sections[i], &step);
-    simulation->step_head_before = simulation->step_head;
-    simulation->step_head = step.head;
+    moving_body_update_field(body, step.shape_old == step.shape ? after : before, after);
+    step_shelter(&step, body->middle, simulation->scene->run.wind_shelter);
+    for (uint32_t i = 0; i < body->of->section_count; ++i)
+        step_section(simulation, &simulation->sections[body->of->first + i], &step);
+    body->step_head_before = body->step_head;
+    body->step_head = step.head;
+}
+
+static void take_step(Simulation *simulation)
+{
+    for (uint32_t b = 0; b < simulation->scene->body_count; ++b)
+        step_body(simulation, &simulation->bodies[b]);
     ++simulation->step;
 }
 
@@ -462,7 +386,7 @@ static void pose_section(Simulation *simulation, SimulationSection *section, con
     solver_pose(&section->solver, head);
     section->posed = true;
     section->posed_at = *head;
-    section->posed_shape = bound_body_shape(&simulation->body, time);
+    section->posed_shape = bound_body_shape(&section->body->mesh, time);
     ++simulation->poses;
 }
 
@@ -473,9 +397,18 @@ static void keep(Simulation *simulation, bool later)
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
         SimulationSection *section = &simulation->sections[i];
         if (!section->inbetween.hair || !moves(section)) continue;
-        pose_section(simulation, section, &simulation->step_head,
+        pose_section(simulation, section, &section->body->step_head,
                      simulation_step_time(simulation, simulation->step));
         inbetween_keep(&section->inbetween, later);
+    }
+}
+
+// Moves each head to its pose in a frame that lies at `share` between two steps.
+static void place_heads(Simulation *simulation, float share)
+{
+    for (uint32_t b = 0; b < simulation->scene->body_count; ++b) {
+        MovingBody *body = &simulation->bodies[b];
+        body->head = share > 0 ? head_at(&body->of->head, simulation->time) : body->step_head;
     }
 }
 
@@ -492,8 +425,7 @@ void simulation_advance(Simulation *simulation)
     simulation->share = next.share;
     simulation->time =
         next.share > 0 ? next.time : simulation_step_time(simulation, simulation->step);
-    simulation->head =
-        next.share > 0 ? head_at(simulation->scene, next.time) : simulation->step_head;
+    place_heads(simulation, next.share);
 }
 
 static void pose_between(Simulation *simulation, SimulationSection *section)
@@ -502,21 +434,21 @@ static void pose_between(Simulation *simulation, SimulationSection *section)
     if (section->bound.body)
         bound_set_between(&section->bound, simulation_step_time(simulation, simulation->step - 1),
                           simulation_step_time(simulation, simulation->step), simulation->time);
-    inbetween_mix(&section->inbetween, simulation->share, &simulation->step_head_before,
-                  &simulation->step_head, &simulation->head);
+    inbetween_mix(&section->inbetween, simulation->share, &section->body->step_head_before,
+                  &section->body->step_head, &section->body->head);
     gpu_timer_end(simulation->timer);
     ++simulation->poses;
 }
 
-void simulation_pose(Simulation *simulation)
+// Poses the hair of one body. Returns whether hair or head have moved since the last pose.
+static bool pose_on_body(Simulation *simulation, MovingBody *body)
 {
-    double shape = bound_body_shape(&simulation->body, simulation->time);
-    bool moved =
-        !head_is_same(&simulation->posed_at, &simulation->head) || simulation->posed_shape != shape;
-    for (uint32_t i = 0; i < simulation->scene->section_count; ++i) {
-        SimulationSection *section = &simulation->sections[i];
+    double shape = bound_body_shape(&body->mesh, simulation->time);
+    bool moved = !head_is_same(&body->posed_at, &body->head) || body->posed_shape != shape;
+    for (uint32_t i = 0; i < body->of->section_count; ++i) {
+        SimulationSection *section = &simulation->sections[body->of->first + i];
         uint64_t stamp = set_params(simulation, section, simulation->time);
-        bool same_head = head_is_same(&section->posed_at, &simulation->head) &&
+        bool same_head = head_is_same(&section->posed_at, &body->head) &&
                          section->posed_shape == shape && section->posed_stamp == stamp;
         if (section->posed && same_head && !moves(section)) {
             ++simulation->poses_skipped;
@@ -525,32 +457,54 @@ void simulation_pose(Simulation *simulation)
         if (simulation->share > 0 && section->inbetween.hair && !section->sleep.asleep)
             pose_between(simulation, section);
         else
-            pose_section(simulation, section, &simulation->head, simulation->time);
-        write_followers(simulation, section, &simulation->head);
+            pose_section(simulation, section, &body->head, simulation->time);
+        write_followers(simulation, section);
         section->posed_stamp = stamp;
         section->stepped = false;
         moved = true;
     }
-    simulation->posed_at = simulation->head;
-    simulation->posed_shape = shape;
+    body->posed_at = body->head;
+    body->posed_shape = shape;
+    return moved;
+}
+
+void simulation_pose(Simulation *simulation)
+{
+    bool moved = false;
+    for (uint32_t b = 0; b < simulation->scene->body_count; ++b)
+        if (pose_on_body(simulation, &simulation->bodies[b])) moved = true;
     simulation->changes += moved;
+}
+
+// Brings a body to the state in which simulation_advance leaves it in a frame. `head`: its pose; if
+// NULL, the pose that the scene gives.
+static void place_body(const Simulation *simulation, MovingBody *body, const ScheduledFrame *frame,
+                       const HeadPose *head)
+{
+    double step = simulation_step_time(simulation, frame->step),
+           later = simulation_step_time(simulation, frame->step + 1);
+    bool between = frame->share > 0;
+    body->head = head ? *head : head_at(&body->of->head, between ? frame->time : step);
+    body->posed_at = body->head;
+    body->posed_shape = bound_body_shape(&body->mesh, simulation->time);
+    moving_body_update_field(body, step, between ? later : step);
 }
 
 Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
                        const float (*positions)[3], Error *error)
 {
     simulation->frame = frame;
-    simulation->head = simulation->posed_at = *head;
     simulation->time = schedule_frame_time(&simulation->scene->run, frame);
-    simulation->posed_shape = bound_body_shape(&simulation->body, simulation->time);
-    simulation_update_field(simulation, simulation->time, simulation->time);
+    ScheduledFrame at = schedule_frame(&simulation->schedule, &simulation->scene->run, frame);
+    for (uint32_t b = 0; b < simulation->scene->body_count; ++b)
+        place_body(simulation, &simulation->bodies[b], &at, b ? NULL : head);
     ++simulation->changes;
     Result result = RESULT_OK;
     for (uint32_t i = 0; i < simulation->scene->section_count && result == RESULT_OK; ++i) {
         SimulationSection *section = &simulation->sections[i];
         result = hair_write_positions(&section->hair, positions, error);
         set_params(simulation, section, simulation->time);
-        if (result == RESULT_OK) write_followers(simulation, section, head);
+        if (result == RESULT_OK) write_followers(simulation, section);
         positions += section->hair.particle_count;
         section->posed = false;
     }

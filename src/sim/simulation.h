@@ -2,27 +2,27 @@
 // The room `sim` moves hair on the GPU. Its input is strands and a scene (head, forces, colliders,
 // parameters). Its output is the positions in Hair's buffers (hair.h), which the renderer draws.
 //
-// A simulation is a scene in motion: the hair of each section with its solver (solver.h),
-// followers, collisions and sleep, advanced frame by frame. A section moves as it would alone, bit
-// for bit: strands are numbered within their section, so nothing that varies from strand to strand
-// depends on other sections. (Only --substeps auto looks at all of them.)
+// A simulation is a scene in motion: its bodies (moving_body.h), and the hair of each section with
+// its solver (solver.h), followers, collisions and sleep, advanced frame by frame. A section moves
+// as it would alone on its body, bit for bit: strands are numbered within their section, so nothing
+// that varies from strand to strand depends on other sections. (Only --substeps auto looks at all
+// of them.)
 #pragma once
 
 #include "scene/scene.h"
 #include "scene/schedule.h"
 #include "sim/bound.h"
-#include "sim/carry.h"
 #include "sim/collision.h"
-#include "sim/distance_field.h"
 #include "sim/follow.h"
 #include "sim/inbetween.h"
-#include "sim/moving_field.h"
+#include "sim/moving_body.h"
 #include "sim/sleep.h"
 #include "sim/solver.h"
 #include "sim/volume.h"
 #include "strands/strands.h"
 
 typedef struct SimulationSection {
+    MovingBody *body;            // that it is on
     const SectionParams *params; // the scene's; `now` if they change over time
     SectionParams now;           // at the current step or drawn frame; its texts are the scene's
     uint64_t posed_stamp;        // the stamp of `now` when followers were last written
@@ -44,23 +44,14 @@ typedef struct Simulation {
     const Scene *scene;
     GpuTimer *timer;
     Schedule schedule;
-    Carry carry;                 // made if the head moves or the mesh deforms
-    BoundBody body;              // empty unless the mesh deforms
     int substeps;                // steps a period; chosen here if --substeps is auto
-    DistanceField field;         // of the mesh that hair collides with; empty if it deforms
-    MovingField moving;          // of the mesh that hair collides with, if it deforms
-    uint32_t mesh_checksum;      // CRC-32 of that mesh's vertices and triangles
+    MovingBody *bodies;          // [scene->body_count]
     SimulationSection *sections; // [scene->section_count]
     int frame;                   // the frame to be drawn now; frame 0 is the start
-    HeadPose head;               // the head in the drawn frame
     double time;                 // s, of the drawn frame
-    float share;     // drawn fraction of the way between the last two steps; 0: the last step
-    float middle[3]; // m: the middle of the roots in the head's frame (--wind-shelter)
-    int64_t step;    // steps since time 0; negative while the hair settles
-    HeadPose step_head, step_head_before;       // the head after the last step and before it
-    HeadPose posed_at;                          // the head at the last pose
-    double posed_shape;                         // the mesh at the last pose (bound_body_shape)
-    uint64_t changes;                           // number of poses that moved hair or head
+    float share;      // drawn fraction of the way between the last two steps; 0: the last step
+    int64_t step;     // steps since time 0; negative while the hair settles
+    uint64_t changes; // number of poses that moved hair or a head
     uint64_t steps, poses, poses_skipped;       // counted for each section
     uint64_t strand_steps, strand_steps_asleep; // made, and left out because of sleep
     uint64_t jumps;                             // of the head, by the rule of --teleport
@@ -84,12 +75,12 @@ Result simulation_choose_substeps(int *substeps, const Scene *scene, const Stran
                                   Error *error);
 
 // Uploads strands[section] and creates the solvers. If scene->run.from_cache is set, no solver is
-// created, and only simulation_show may be called. `mesh` is the mesh that hair collides with
-// unless the scene says otherwise; it may be NULL and is not needed afterwards. `gpu`, `timer` and
-// `scene` must outlive the simulation. Errors of hair_create and solver_create, prefixed with the
-// section's file, and of simulation_choose_substeps.
+// created, and only simulation_show may be called. `meshes` has the mesh of each body, with which
+// its hair collides unless the scene says otherwise; it may be NULL and is not needed afterwards.
+// `gpu`, `timer` and `scene` must outlive the simulation. Errors of hair_create and solver_create,
+// prefixed with the section's file, and of simulation_choose_substeps.
 Result simulation_create(Simulation *simulation, const Gpu *gpu, GpuTimer *timer,
-                         const Scene *scene, const Strands *strands, const Mesh *mesh,
+                         const Scene *scene, const Strands *strands, const Mesh *meshes,
                          Error *error);
 void simulation_destroy(Simulation *simulation);
 
@@ -101,15 +92,12 @@ bool simulation_settle(Simulation *simulation);
 // Advances to the next frame, by as many steps of each section as needed. Only queues GPU work.
 void simulation_advance(Simulation *simulation);
 
-// Prepares for a head that will move although the scene does not say so. Call it before the head
-// moves. Errors of carry_create.
-Result simulation_expect_motion(Simulation *simulation, const Gpu *gpu, Error *error);
-
 // Writes the drawn positions; skips sections that have not changed. While `changes` stays the
 // same, the drawn hair and head stay the same.
 void simulation_pose(Simulation *simulation);
 
-// Shows a frame that was simulated elsewhere. `positions`: the drawn positions of the guides of
+// Shows a frame that was simulated elsewhere. `head`: the first body's; the others are where the
+// scene has them. `positions`: the drawn positions of the guides of
 // all sections, section after section, each as in hair_write_positions. Followers are computed
 // from them. The simulation's own state is lost. RESULT_FAILED when memory is short.
 Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
@@ -121,10 +109,6 @@ double simulation_step_time(const Simulation *simulation, int64_t step);
 // Sets a section's parameters to those of the step that begins after `step` steps, and returns
 // their stamp.
 uint64_t simulation_params_stamp(Simulation *simulation, uint32_t section, int64_t step);
-
-// Updates the distance field of a mesh that deforms, for a step between two times (s). Other
-// fields do not change.
-void simulation_update_field(Simulation *simulation, double before, double after);
 
 // Adds up the solvers' reports. Waits for the GPU.
 SolverReport simulation_report(const Simulation *simulation);

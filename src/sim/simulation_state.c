@@ -149,9 +149,11 @@ static bool pass_numbers(Archive *archive, Simulation *simulation, const BufferL
     pass_long(archive, &frame);
     simulation->frame = (int)frame;
     pass_words(archive, &simulation->share, 1);
-    pass_pose(archive, &simulation->head);
-    pass_pose(archive, &simulation->step_head);
-    pass_pose(archive, &simulation->step_head_before);
+    for (uint32_t b = 0; b < simulation->scene->body_count; ++b) {
+        pass_pose(archive, &simulation->bodies[b].head);
+        pass_pose(archive, &simulation->bodies[b].step_head);
+        pass_pose(archive, &simulation->bodies[b].step_head_before);
+    }
     for (uint32_t i = 0; i < simulation->scene->section_count; ++i)
         pass_sleep(archive, &simulation->sections[i].sleep);
     pass_words(archive, &count, 1);
@@ -242,14 +244,15 @@ static void begin_sections(Simulation *simulation)
         SimulationSection *section = &simulation->sections[i];
         inbetween_restore(&section->inbetween);
         bound_set_after(&section->bound, now);
-        solver_pose(&section->solver, &simulation->step_head);
+        solver_pose(&section->solver, &section->body->step_head);
         section->posed = false;
         if (simulation->step > -simulation->schedule.settling)
             section->sleep.last.params_stamp =
                 simulation_params_stamp(simulation, i, simulation->step - 1);
-        section->sleep.last.shape = bound_body_shape(&simulation->body, now);
+        section->sleep.last.shape = bound_body_shape(&section->body->mesh, now);
     }
-    simulation_update_field(simulation, now, now);
+    for (uint32_t b = 0; b < simulation->scene->body_count; ++b)
+        moving_body_update_field(&simulation->bodies[b], now, now);
     simulation->time = simulation->share > 0
                            ? schedule_frame_time(&simulation->scene->run, simulation->frame)
                            : now;

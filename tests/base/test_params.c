@@ -11,27 +11,32 @@
 
 #include <cmocka.h>
 
-// Both structs, and the one that a row is about.
+// The structs, and the one that a row is about.
 typedef struct Params {
     RunParams run;
+    BodyParams body;
     SectionParams section;
 } Params;
 
 static void *params_of(Params *params, const ParamInfo *info)
 {
-    return info->scope == SCOPE_RUN ? (void *)&params->run : (void *)&params->section;
+    return info->scope == SCOPE_RUN    ? (void *)&params->run
+           : info->scope == SCOPE_BODY ? (void *)&params->body
+                                       : (void *)&params->section;
 }
 
 static void create(Params *params)
 {
     Error error = {{0}};
     assert_int_equal(params_create_run(&params->run, &error), RESULT_OK);
+    assert_int_equal(params_create_body(&params->body, &error), RESULT_OK);
     assert_int_equal(params_create_section(&params->section, &error), RESULT_OK);
 }
 
 static void destroy(Params *params)
 {
     params_destroy_run(&params->run);
+    params_destroy_body(&params->body);
     params_destroy_section(&params->section);
 }
 

@@ -161,7 +161,7 @@ static void cast_shadows(Shade *shade, const LaneBaseScene *base)
                              .mesh_version = 1};
     memcpy(scene.mesh_low, mesh->low, sizeof scene.mesh_low);
     memcpy(scene.mesh_high, mesh->high, sizeof scene.mesh_high);
-    drawing_find_middle(drawing, &studio.hair[0], scene.middle);
+    drawing_find_middle(&studio.items[0], scene.middle);
     NEEDED(lane_shadow_create(&shade->shadow, &studio.renderer.options.shadow, error));
     NEEDED(lane_shadow_draw(&shade->shadow, &scene, error));
 }

@@ -42,13 +42,15 @@ static void create(World *world, const char *algo)
     assert_int_equal(scene_add_section(&world->scene, "x.tfx", &params, NULL), RESULT_OK);
     params_destroy_section(&params);
     Assets *assets = &world->assets;
-    *assets = (Assets){.section_count = 1, .has_mesh = true};
+    *assets = (Assets){.section_count = 1, .body_count = 1};
+    assets->meshes = calloc(1, sizeof *assets->meshes);
+    assert_non_null(assets->meshes);
     assets->strands = calloc(1, sizeof *assets->strands);
     assert_int_equal(strands_create(assets->strands, 2, 4, NULL), RESULT_OK);
     memcpy(assets->strands->position, POSITIONS, sizeof POSITIONS);
     assets->strands->first[1] = 2;
     assets->strands->first[2] = 4;
-    assert_int_equal(mesh_create(&assets->mesh, 3, 1, NULL), RESULT_OK);
+    assert_int_equal(mesh_create(assets->meshes, 3, 1, NULL), RESULT_OK);
     outline_frame(&world->framing, &world->scene, assets->strands, NULL);
 }
 
@@ -81,7 +83,7 @@ static bool is_exempt(const char *name)
 
 static void *params_of(World *world, const ParamInfo *info)
 {
-    return info->scope == SCOPE_RUN ? (void *)&world->scene.run : &world->scene.sections[0].params;
+    return scene_params(&world->scene, info->scope, 0);
 }
 
 // Gives the parameter another value than it has.
@@ -173,11 +175,11 @@ static void ask_radius(World *world)
 }
 static void move_mesh(World *world)
 {
-    world->assets.mesh.position[2][0] += 1;
+    world->assets.meshes[0].position[2][0] += 1;
 }
 static void turn_triangle(World *world)
 {
-    world->assets.mesh.triangle[0][1] = 2;
+    world->assets.meshes[0].triangle[0][1] = 2;
 }
 static void other_driver(World *world)
 {
@@ -193,7 +195,8 @@ static void other_maker(World *world)
 }
 static void move_head(World *world)
 {
-    for (int i = 0; i < 3; ++i) world->scene.head.translation_formula[i].text = strdup("t");
+    for (int i = 0; i < 3; ++i)
+        world->scene.bodies[0].head.translation_formula[i].text = strdup("t");
 }
 static void dim_light(World *world)
 {

@@ -46,7 +46,8 @@ static void open_shot(Shot *shot, float scale)
     assert_int_equal(params_create_run(&shot->scene.run, &error), RESULT_OK);
     assert_int_equal(params_create_section(&shot->section.params, &error), RESULT_OK);
     shot->scene.sections = &shot->section;
-    shot->scene.section_count = 1;
+    shot->scene.section_count = shot->scene.body_count = 1;
+    shot->scene.bodies[0].section_count = 1;
     shot->strands = make_tuft(scale);
 }
 
@@ -54,7 +55,7 @@ static void close_shot(Shot *shot)
 {
     params_destroy_run(&shot->scene.run);
     params_destroy_section(&shot->section.params);
-    rigid_track_destroy(&shot->scene.head);
+    rigid_track_destroy(&shot->scene.bodies[0].head);
     keyframes_destroy(&shot->scene.eye);
     keyframes_destroy(&shot->scene.fov);
     strands_destroy(&shot->strands);
@@ -135,7 +136,7 @@ static void open_motion(Shot *shot, const Motion *motion)
     shot->section.params.followers.automatic = false; // nothing beside the strands
     shot->section.params.followers.value = 0;
     if (motion->aslant != 0) lay_aslant(shot, motion->aslant);
-    Keyframes *track = &shot->scene.head.translation;
+    Keyframes *track = &shot->scene.bodies[0].head.translation;
     keyframes_append(track, 0, STILL, 3, &error);
     if (motion->head_from > 0) keyframes_append(track, (double)motion->head_from, STILL, 3, &error);
     keyframes_append(track, 2, motion->head_to, 3, &error);
@@ -155,7 +156,7 @@ static void hair_stays_in_the_frame_and_fills_it(void **state)
             View view;
             float rotation[4], translation[3];
             view_of(&shot, frame, &view);
-            rigid_track_evaluate(&shot.scene.head, frame / 60.0, rotation, translation);
+            rigid_track_evaluate(&shot.scene.bodies[0].head, frame / 60.0, rotation, translation);
             most = fmaxf(most, extent_in_frame(&shot, &view, translation));
         }
         if (!(most <= 1 && most > 0.8f))

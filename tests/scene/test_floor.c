@@ -53,7 +53,7 @@ static void it_is_the_ground_that_hair_falls_on(void **state)
     Error error = {{0}};
     const char *shapes = "ground:-1;plane:0,1,0,8;ground:0.5;sphere:0,9,0,1";
     scene.run.floor = FLOOR_SHADOW;
-    assert_int_equal(colliders_parse(&scene.colliders, shapes, &error), RESULT_OK);
+    assert_int_equal(colliders_parse(&scene.bodies[0].colliders, shapes, &error), RESULT_OK);
     assert_float_equal(floor_find(&scene, &framing).middle[1], 0.5, 0);
 }
 
@@ -63,7 +63,7 @@ static void it_lies_where_the_scene_says(void **state)
     Error error = {{0}};
     scene.run.floor = FLOOR_PLANE;
     scene.run.floor_height = (AutoFloat){.value = -7};
-    assert_int_equal(colliders_parse(&scene.colliders, "ground:-1", &error), RESULT_OK);
+    assert_int_equal(colliders_parse(&scene.bodies[0].colliders, "ground:-1", &error), RESULT_OK);
     assert_float_equal(floor_find(&scene, &framing).middle[1], -7, 0);
     assert_float_equal(floor_find(&scene, &framing).whole, 2.5 + 10, 1e-6);
 }

@@ -26,17 +26,20 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_true(scene.run.gravity[1] == -3.71f && scene.gravity.count == 0);
     assert_int_equal(scene.wind.count, 2);
     assert_int_equal(scene.wind.interpolation, INTERPOLATION_LINEAR);
-    assert_int_equal(scene.head.rotation.count, 2);
-    assert_int_equal(scene.head.translation.count, 2);
-    assert_true(scene.head.translation.time[0] == 1 && scene.head.pivot[1] == 1.5f);
-    assert_true(fabsf(scene.head.rotation.value[4] - 1.57079633f) < 1e-6f);
+    assert_int_equal(scene.bodies[0].head.rotation.count, 2);
+    assert_int_equal(scene.bodies[0].head.translation.count, 2);
+    assert_true(scene.bodies[0].head.translation.time[0] == 1 &&
+                scene.bodies[0].head.pivot[1] == 1.5f);
+    assert_true(fabsf(scene.bodies[0].head.rotation.value[4] - 1.57079633f) < 1e-6f);
     assert_int_equal(scene.eye.count, 2);
     assert_int_equal(scene.target.count, 0);
     assert_int_equal(scene.fov.count, 1);
-    assert_int_equal(scene.colliders.count, 3);
-    assert_true(scene.colliders.list[0].world && scene.colliders.list[0].numbers[7] == 0.05f);
-    assert_true(!scene.colliders.list[1].world && scene.colliders.list[1].numbers[3] == 0.09f);
-    assert_true(scene.colliders.list[2].kind == COLLIDER_GROUND);
+    assert_int_equal(scene.bodies[0].colliders.count, 3);
+    assert_true(scene.bodies[0].colliders.list[0].world &&
+                scene.bodies[0].colliders.list[0].numbers[7] == 0.05f);
+    assert_true(!scene.bodies[0].colliders.list[1].world &&
+                scene.bodies[0].colliders.list[1].numbers[3] == 0.09f);
+    assert_true(scene.bodies[0].colliders.list[2].kind == COLLIDER_GROUND);
     assert_int_equal(scene.light_count, 4);
     assert_true(scene.lights[0].direction[1] == 1);
     assert_true(fabsf(scene.lights[0].color[1] - 0.2158605f) < 1e-5f);
@@ -80,7 +83,7 @@ static void paths_in_a_scene_file_are_relative_to_its_folder(void **state)
     assert_read(&scene, "tests/data/scene_full.json --stats here.json");
     assert_string_equal(scene.sections[0].file, "tests/data/hair/top.tfx");
     assert_string_equal(scene.sections[1].file, "/hair/beard.hair");
-    assert_string_equal(scene.run.mesh, "tests/data/models/head.obj");
+    assert_string_equal(scene.bodies[0].params.mesh, "tests/data/models/head.obj");
     assert_string_equal(scene.run.output, "tests/data/frames/");
     assert_string_equal(scene.run.stats, "here.json");
     scene_destroy(&scene);

@@ -17,7 +17,7 @@
 
 static void *params_of(Scene *scene, const ParamInfo *info)
 {
-    return info->scope == SCOPE_RUN ? (void *)&scene->run : (void *)&scene->sections[0].params;
+    return scene_params(scene, info->scope, 0);
 }
 
 static void assert_prints(Scene *scene, const ParamInfo *info, const char *expected)

@@ -39,7 +39,7 @@ static void set_formula(Formula *formula, const char *text)
 static void create_turning(SimulationFixture *fixture, const char *algo)
 {
     simulation_fixture_create(fixture, algo, "");
-    RigidTrack *head = &fixture->scene.head;
+    RigidTrack *head = &fixture->scene.bodies[0].head;
     rigid_track_destroy(head);
     for (int k = 0; k < 3; ++k) {
         set_formula(&head->translation_formula[k], "0");
@@ -51,7 +51,7 @@ static void create_turning(SimulationFixture *fixture, const char *algo)
 static void create_tracked(SimulationFixture *fixture, const char *algo, const char *variant)
 {
     simulation_fixture_create(fixture, algo, variant);
-    RigidTrack *head = &fixture->scene.head;
+    RigidTrack *head = &fixture->scene.bodies[0].head;
     rigid_track_destroy(head);
     set_formula(&head->translation_formula[0], "0.05*(1-cos(3*t))");
     set_formula(&head->translation_formula[1], "0.02*t^2");
@@ -125,7 +125,7 @@ static void an_even_turn_is_exact_between_samples(void **state)
     body_fixture_create(&bound, "chain", "", turning, 24, -0.05, 20);
     create_turning(&tracked, "chain");
     // Time 0 is no sample: the groom is on the mesh as it is then.
-    HeadPose start = head_at(&bound.base.scene, 0);
+    HeadPose start = head_at(&bound.base.scene.bodies[0].head, 0);
     for (int k = 0; k < 3; ++k)
         assert_true(fabsf(start.rotation[k]) < 1e-7f && fabsf(start.translation[k]) < 1e-7f);
     simulation_fixture_start(&bound.base);
@@ -225,7 +225,7 @@ static double farthest_from_skin(BodyFixture *fixture, bool followers, double ti
     mesh_sequence_evaluate(&fixture->body.sequence, time, mesh.position);
     assert_int_equal(surface_create(&surface, &mesh, "sheet", NULL), RESULT_OK);
     float(*positions)[3] = body_fixture_positions(fixture, followers, &count);
-    HeadPose head = head_at(&fixture->base.scene, time);
+    HeadPose head = head_at(&fixture->base.scene.bodies[0].head, time);
     RigidMotion pose;
     for (int k = 0; k < 4; ++k) pose.rotation[k] = (double)head.rotation[k];
     for (int k = 0; k < 3; ++k) pose.translation[k] = (double)head.translation[k];

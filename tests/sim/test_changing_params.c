@@ -91,7 +91,7 @@ static void check_fading(const char *algo, const char *variant)
     simulation_fixture_create(&loose, algo, variant);
     SimulationFixture *both[] = {&fading, &loose};
     for (int i = 0; i < 2; ++i) {
-        rigid_track_destroy(&both[i]->scene.head);
+        rigid_track_destroy(&both[i]->scene.bodies[0].head);
         memset(both[i]->scene.run.wind, 0, sizeof both[i]->scene.run.wind);
         both[i]->scene.sections[0].params.drag = 6;
     }
@@ -126,7 +126,7 @@ static void changes_wake_hair_and_resume(void **state)
     SimulationFixture *both[] = {&whole, &resumed};
     for (int i = 0; i < 2; ++i) {
         simulation_fixture_create(both[i], "split", "");
-        rigid_track_destroy(&both[i]->scene.head);
+        rigid_track_destroy(&both[i]->scene.bodies[0].head);
         memset(both[i]->scene.run.wind, 0, sizeof both[i]->scene.run.wind);
         both[i]->scene.run.gust = 0;
         add_track(both[i], "style", "t < 9 ? 0.5 : max(0.5 - (t - 9), 0.1)");

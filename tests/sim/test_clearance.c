@@ -51,9 +51,9 @@ static void create(SimulationFixture *fixture, const char *algo, const char *var
     memset(fixture->scene.run.wind, 0, sizeof fixture->scene.run.wind);
     fixture->scene.run.gust = 0;
     fixture->scene.sections[0].params.sleep = 0;
-    if (still) rigid_track_destroy(&fixture->scene.head);
-    if (still) fixture->scene.head = (RigidTrack){0};
-    assert_int_equal(colliders_parse(&fixture->scene.colliders, HEAD, &error), RESULT_OK);
+    if (still) rigid_track_destroy(&fixture->scene.bodies[0].head);
+    if (still) fixture->scene.bodies[0].head = (RigidTrack){0};
+    assert_int_equal(colliders_parse(&fixture->scene.bodies[0].colliders, HEAD, &error), RESULT_OK);
 }
 
 static bool keeps_groom(const char *algo, const char *variant)
@@ -69,7 +69,7 @@ static bool keeps_groom(const char *algo, const char *variant)
 // Drawn positions, with what the head has moved them taken back.
 static float (*read_points(const SimulationFixture *fixture, const Hair *hair))[3]
 {
-    const HeadPose *head = &fixture->simulation.head;
+    const HeadPose *head = &fixture->simulation.bodies[0].head;
     float(*points)[3] = calloc(hair->particle_count, sizeof *points);
     assert_non_null(points);
     assert_int_equal(hair_read_positions(hair, points, NULL), RESULT_OK);

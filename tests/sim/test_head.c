@@ -25,17 +25,17 @@ static void set_formulas(Formula formulas[3], const char *x, const char *y, cons
 static void create(SimulationFixture *fixture, const char *algo, const char *x, const char *turn)
 {
     simulation_fixture_create(fixture, algo, "");
-    rigid_track_destroy(&fixture->scene.head);
+    rigid_track_destroy(&fixture->scene.bodies[0].head);
     memset(fixture->scene.run.wind, 0, sizeof fixture->scene.run.wind);
     fixture->scene.run.gust = 0;
-    set_formulas(fixture->scene.head.translation_formula, x, "0", "0");
-    set_formulas(fixture->scene.head.rotation_formula, "0", turn, "0");
+    set_formulas(fixture->scene.bodies[0].head.translation_formula, x, "0", "0");
+    set_formulas(fixture->scene.bodies[0].head.rotation_formula, "0", turn, "0");
 }
 
 // The tip, seen from the head.
 static void read_tip(SimulationFixture *fixture, vec3 tip)
 {
-    const HeadPose *head = &fixture->simulation.head;
+    const HeadPose *head = &fixture->simulation.bodies[0].head;
     versor back;
     simulation_fixture_read(fixture, BATCH_OF_12, LAST_VERTEX, tip);
     glm_vec3_sub(tip, (float *)head->translation, tip);
@@ -57,8 +57,8 @@ static void the_start_has_the_heads_velocity(void **state)
     SimulationFixture fixture;
     HeadMotion motion;
     create(&fixture, "chain", "3*t + 5*t^2", "90*t");
-    fixture.scene.head.pivot[0] = 0.5f;
-    assert_true(head_starts_moving(&fixture.scene, &motion));
+    fixture.scene.bodies[0].head.pivot[0] = 0.5f;
+    assert_true(head_starts_moving(&fixture.scene.bodies[0].head, &motion));
     // The differences have float32's rounding, 2e-7 rad or m in 1e-3 s.
     assert_true(fabsf(motion.spin[1] - 1.5707963f) < 1e-3f);
     // The point at the origin goes round the pivot 0.5 m away, and along with it.
@@ -66,7 +66,7 @@ static void the_start_has_the_heads_velocity(void **state)
     assert_true(fabsf(motion.velocity[2] - 0.5f * 1.5707963f) < 1e-3f);
     simulation_fixture_destroy(&fixture);
     simulation_fixture_create(&fixture, "chain", ""); // smooth keys begin at rest
-    head_starts_moving(&fixture.scene, &motion);
+    head_starts_moving(&fixture.scene.bodies[0].head, &motion);
     assert_true(glm_vec3_norm(motion.velocity) < 1e-3f && glm_vec3_norm(motion.spin) < 1e-2f);
     simulation_fixture_destroy(&fixture);
 }
@@ -142,20 +142,20 @@ static void what_is_carried_leaves_the_limit(void **state)
     SimulationFixture fixture;
     create(&fixture, "none", "0", "0");
     Scene *scene = &fixture.scene;
-    scene->head.pivot[1] = 1;
+    scene->bodies[0].head.pivot[1] = 1;
     scene->run.teleport = TELEPORT_LIMIT;
     HeadPose from = {.rotation = {0, 0, 0, 1}}, to = {.translation = {2, 0, 0}}, carried;
     glm_quatv(to.rotation, glm_rad(60), (vec3){0, 1, 0}); // leaves the pivot's x and z
-    assert_true(head_jumps(scene, &from, &to, &carried));
+    assert_true(head_jumps(&scene->run, scene->bodies[0].head.pivot, &from, &to, &carried));
     // A quarter of 2 m is 0.5 m, of 60 degrees 15.
     assert_true(fabsf(carried.translation[0] - 1.5f) < 1e-6f);
     assert_true(fabsf(2 * acosf(carried.rotation[3]) - glm_rad(45)) < 1e-5f);
     to.translation[0] = 0.4f;
-    assert_false(head_jumps(scene, &from, &to, &carried));
+    assert_false(head_jumps(&scene->run, scene->bodies[0].head.pivot, &from, &to, &carried));
     glm_quatv(to.rotation, glm_rad(100), (vec3){0, 1, 0});
-    assert_true(head_jumps(scene, &from, &to, &carried));
+    assert_true(head_jumps(&scene->run, scene->bodies[0].head.pivot, &from, &to, &carried));
     scene->run.teleport = TELEPORT_NONE;
-    assert_false(head_jumps(scene, &from, &to, &carried));
+    assert_false(head_jumps(&scene->run, scene->bodies[0].head.pivot, &from, &to, &carried));
     simulation_fixture_destroy(&fixture);
 }
 

@@ -96,7 +96,6 @@ static void motion_counts_like_wind(void **state)
 static void the_middle_is_that_of_all_roots(void **state)
 {
     (void)state;
-    Scene scene = {.section_count = 2};
     Strands strands[2];
     float middle[3];
     for (int i = 0; i < 2; ++i) {
@@ -105,7 +104,7 @@ static void the_middle_is_that_of_all_roots(void **state)
         strands[i].position[0][0] = 4.0f * (float)i;
         strands[i].position[1][0] = 100;
     }
-    head_middle(middle, &scene, strands);
+    head_middle(middle, strands, 2);
     assert_true(middle[0] == 2 && middle[1] == 0);
     strands_destroy(&strands[0]);
     strands_destroy(&strands[1]);

@@ -89,8 +89,8 @@ static void frames_between_steps_lie_between_them(void **state)
     simulation_fixture_create(&fixture, "chain", "");
     fixture.scene.run.sim_rate = 30;
     fixture.scene.run.fps = 90;
-    keyframes_destroy(&fixture.scene.head.translation);
-    keyframes_destroy(&fixture.scene.head.rotation);
+    keyframes_destroy(&fixture.scene.bodies[0].head.translation);
+    keyframes_destroy(&fixture.scene.bodies[0].head.rotation);
     simulation_fixture_start(&fixture);
     for (int step = 0; step < 8; ++step) {
         float p[4][3];
@@ -188,8 +188,8 @@ static void the_warm_up_is_simulated_with_the_head_at_rest(void **state)
     assert_int_equal(settled.simulation.step, 0);
     simulation_fixture_create(&plain, "chain", "");
     plain.scene.run.wind[0] = 0;
-    keyframes_destroy(&plain.scene.head.translation);
-    keyframes_destroy(&plain.scene.head.rotation);
+    keyframes_destroy(&plain.scene.bodies[0].head.translation);
+    keyframes_destroy(&plain.scene.bodies[0].head.rotation);
     simulation_fixture_start(&plain);
     uint64_t first = simulation_fixture_hash(&plain);
     simulation_fixture_go(&plain, 30);
@@ -197,7 +197,7 @@ static void the_warm_up_is_simulated_with_the_head_at_rest(void **state)
     assert_true(simulation_fixture_hash(&settled) == simulation_fixture_hash(&plain));
     // Then the head moves on from its first pose.
     simulation_fixture_go(&settled, 1);
-    assert_true(settled.simulation.head.translation[0] != 0);
+    assert_true(settled.simulation.bodies[0].head.translation[0] != 0);
     simulation_fixture_destroy(&settled);
     simulation_fixture_destroy(&plain);
 }
@@ -259,13 +259,13 @@ static float spacing_of(const char *algo, bool mesh, bool section)
     Error error;
     simulation_fixture_create(&fixture, algo, "");
     fixture.scene.run.sdf_cache = false;
-    if (!mesh) fixture.scene.run.collide_mesh = false;
+    if (!mesh) fixture.scene.bodies[0].params.collide_mesh = false;
     if (!section) fixture.scene.sections[0].params.collide = false;
     assert_int_equal(scalp_make_mesh(&ball, SCALP_SPHERE, 8, &error), RESULT_OK);
     if (simulation_create(&fixture.simulation, fixture_gpu(), &fixture.timer, &fixture.scene,
                           &fixture.strands, &ball, &error))
         fail_msg("%s", error.text);
-    float spacing = fixture.simulation.field.spacing;
+    float spacing = fixture.simulation.bodies[0].field.spacing;
     mesh_destroy(&ball);
     simulation_fixture_destroy(&fixture);
     return spacing;

@@ -255,7 +255,8 @@ static void the_head_wakes(void **state)
     (void)state;
     World world;
     create_scene(&world, "dftl", 20, 1e-5f);
-    change_at(&world.scene.head.translation, WOKEN_S, (float[]){0, 0, 0}, (float[]){0, 0, 0.01f});
+    change_at(&world.scene.bodies[0].head.translation, WOKEN_S, (float[]){0, 0, 0},
+              (float[]){0, 0, 0.01f});
     check_wakes(&world);
 }
 

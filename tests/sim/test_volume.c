@@ -44,7 +44,8 @@ static void start(World *world, const Gpu *gpu, const char *algo, float volume, 
     assert_int_equal(scene_add_section(&world->scene, "hair", &params, NULL), RESULT_OK);
     params_destroy_section(&params);
     if (*colliders)
-        assert_int_equal(colliders_parse(&world->scene.colliders, colliders, NULL), RESULT_OK);
+        assert_int_equal(colliders_parse(&world->scene.bodies[0].colliders, colliders, NULL),
+                         RESULT_OK);
     recipe.count = 2000, recipe.vertices = 24, recipe.length = 0.5f;
     assert_int_equal(strands_make(&world->strands, &recipe, NULL), RESULT_OK);
     gpu_timer_create(&world->timer, false, true);

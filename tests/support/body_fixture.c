@@ -56,7 +56,7 @@ void body_fixture_create(BodyFixture *fixture, const char *algo, const char *var
     *fixture = (BodyFixture){0};
     simulation_fixture_create(&fixture->base, algo, variant);
     Scene *scene = &fixture->base.scene;
-    rigid_track_destroy(&scene->head);
+    rigid_track_destroy(&scene->bodies[0].head);
     make_sheet(&fixture->mesh);
     body_fixture_sample(&sequence, &fixture->mesh, motion, rate, start, count);
     const BodyOptions options = {"sheet", scene->run.teleport_distance, scene->run.teleport_angle,
@@ -64,9 +64,9 @@ void body_fixture_create(BodyFixture *fixture, const char *algo, const char *var
     if (body_create(&fixture->body, &sequence, &fixture->mesh, &none, &fixture->base.strands, 1,
                     &options, &error) != RESULT_OK)
         fail_msg("%s", error.text);
-    scene->body = &fixture->body;
-    scene->head.samples = &fixture->body.head;
-    body_middle(&fixture->body, scene->head.pivot);
+    scene->bodies[0].shape = &fixture->body;
+    scene->bodies[0].head.samples = &fixture->body.head;
+    body_middle(&fixture->body, scene->bodies[0].head.pivot);
 }
 
 void body_fixture_destroy(BodyFixture *fixture)

@@ -44,8 +44,8 @@ void simulation_fixture_create(SimulationFixture *fixture, const char *algo, con
     const float poses[][3] = {{0, 0, 0}, {0.02f, 0, 0.01f}, {-0.01f, 0, 0}},
                 turns[][3] = {{0, 0, 0}, {0, 0.3f, 0}, {0, -0.2f, 0.1f}};
     for (int i = 0; i < 3; ++i) {
-        keyframes_append(&scene->head.translation, 0.3 * i, poses[i], 3, NULL);
-        keyframes_append(&scene->head.rotation, 0.3 * i, turns[i], 3, NULL);
+        keyframes_append(&scene->bodies[0].head.translation, 0.3 * i, poses[i], 3, NULL);
+        keyframes_append(&scene->bodies[0].head.rotation, 0.3 * i, turns[i], 3, NULL);
     }
     make_strands(&fixture->strands);
     gpu_timer_create(&fixture->timer, false, true);
@@ -97,8 +97,10 @@ uint64_t simulation_fixture_hash(SimulationFixture *fixture)
     const Simulation *simulation = &fixture->simulation;
     const Hair *hair = &simulation->sections[0].hair;
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
-    hash = hash_bytes(hash, simulation->head.rotation, sizeof simulation->head.rotation);
-    hash = hash_bytes(hash, simulation->head.translation, sizeof simulation->head.translation);
+    hash = hash_bytes(hash, simulation->bodies[0].head.rotation,
+                      sizeof simulation->bodies[0].head.rotation);
+    hash = hash_bytes(hash, simulation->bodies[0].head.translation,
+                      sizeof simulation->bodies[0].head.translation);
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         const HairBatch *batch = &hair->batches[i];
         float(*positions)[4] = read_batch(batch);

@@ -69,7 +69,8 @@ uint32_t studio_add(Studio *studio, const Strands *strands, float radius, float 
     plain_section(material);
     studio_make_plain(material, opacity);
     NEEDED(hair_create(&studio->hair[i], strands, first_id, &studio->gpu.limits, error));
-    studio->items[i] = (RenderItem){&studio->hair[i], material, radius};
+    studio->items[i] =
+        (RenderItem){.hair = &studio->hair[i], .material = material, .radius = radius};
     return i;
 }
 
