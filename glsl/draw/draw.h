@@ -115,7 +115,8 @@ UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
     vec4 eye;                     // xyz, m
     vec4 light_place[MAX_LIGHTS]; // xyz: unit vector towards the light, with w = 0; or the place of
                                   // a lamp, m, with w = 1
-    vec4 light_color[MAX_LIGHTS]; // linear RGB times intensity
+    vec4 light_color[MAX_LIGHTS]; // linear RGB times intensity; w: variance of its directions along
+                                  // one axis, rad^2: 0 of a light without a radius
     vec4 light_axis[MAX_LIGHTS];  // xyz: unit, direction of a spot; w: reference distance squared,
                                   // m2
     vec4 light_cone[MAX_LIGHTS];  // x - y cos(angle to the axis): a spot's light before clamping to

@@ -99,6 +99,19 @@ vec3 albedo_of(Fibre m, vec3 base)
                 fibre_albedo(base.b, m.albedo.x, m.albedo.y));
 }
 
+#if WIDE
+// The lobes in light whose directions have the variance `wide`.
+Fibre widened(Fibre m, float wide)
+{
+    if (wide > 0.0)
+        for (int p = 0; p < 3; ++p) {
+            m.sharpness[p] = fibre_wide_sharpness(m.sharpness[p], wide);
+            m.scale[p] = fibre_lobe_scale(m.sharpness[p]);
+        }
+    return m;
+}
+#endif
+
 // Linear RGB of a fibre at x, at point `point` of a batch. `base`: share of white light that the
 // fibre's diameter transmits; `tangent`: unit, root to tip; `to_eye`: unit.
 vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_eye)
@@ -120,7 +133,12 @@ vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_ey
 #else
         float cos_d = cos_r;
 #endif
+#if WIDE
+        vec3 along =
+            longitudinal(widened(m, draw_params.light_color[i].w), to, sin_i, cos_i, cos_d);
+#else
         vec3 along = longitudinal(m, to, sin_i, cos_i, cos_d);
+#endif
         vec2 at = vec2(fibre_turn(cos_phi), cos_d);
         vec3 scattered = sum_of_beams(m, base, at, along);
         color += reaching * PI * scattered;

@@ -2,6 +2,7 @@
 // The share of a light that reaches a point (needs shadow.h).
 //   SHADOW 0: all of it   1: approximated deep shadow map, as in TressFX   2: deep opacity map
 //   SHADOW_BY_MESH 1: the mesh casts shadows, too
+//   WIDE 1: lights may have a radius
 //   LIGHT_COUNT, SHADOW_MAPS: numbers of lights and maps, so that loops over them are unrolled; 0:
 //       any number
 #ifndef LIGHT_COUNT
@@ -9,6 +10,9 @@
 #endif
 #ifndef SHADOW_MAPS
 #define SHADOW_MAPS 0
+#endif
+#ifndef WIDE
+#define WIDE 0
 #endif
 
 #if SHADOW
@@ -52,6 +56,48 @@ float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
     sum -= own_layer_depth(shadow_fibre.x * of_light.w, shadow_fibre.y, own);
     return left_of_fibres(max(sum, 0.0));
 }
+
+#if WIDE
+int wide_texel(int map, vec2 place)
+{
+    return (map * shadow_side + left_texel(place.y, shadow_side)) * shadow_side +
+           left_texel(place.x, shadow_side);
+}
+
+// The same for a wide light (kernel/left.h).
+float light_through_wide(int map, vec2 place, float depth, vec4 of_light)
+{
+    int squares = shadow_side * shadow_side;
+    float reach = shadow_params.wide[map].x, front = depth, left = 0.0;
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        vec2 off = reach * max(depth, 0.0) * shadow_params.ray[r].xy;
+        front = min(front, texelFetch(shadow_depths, wide_texel(map, place + off)).x);
+    }
+    float span = depth - front;
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        vec4 ray = shadow_params.ray[r];
+        float fibres = 0.0, share = 0.0;
+        for (int slab = 0; slab < LEFT_SLABS; ++slab) {
+            int texel =
+                wide_texel(map, place + reach * left_slab_middle(slab) * span * ray.xy + ray.zw);
+            float begin = texelFetch(shadow_depths, texel).x, ends[2];
+            ends[0] = slab > 0 ? left_slab_end(slab - 1) : 0.0;
+            ends[1] = left_slab_end(slab);
+            for (int e = 0; e < 2; ++e) {
+                float layer = layer_of(front + ends[e] * span - begin), which = floor(layer);
+                share = layer - which;
+                // After all layers of the maps before, those of this map.
+                int at = texel + (map * (SHADOW_LAYERS - 1) + int(which)) * squares;
+                float met = texel_depth(at, share);
+                fibres += e == 0 ? -met : met;
+            }
+        }
+        fibres -= own_layer_depth(shadow_fibre.x * of_light.w, shadow_fibre.y, share);
+        left += left_of_fibres(max(fibres, 0.0));
+    }
+    return left * (1.0 / float(LEFT_RAYS));
+}
+#endif
 #else
 float light_through_hair(int map, vec2 place, float depth, vec4 of_light)
 {
@@ -91,12 +137,55 @@ vec4 mesh_depths(int map, ivec2 first)
     return textureGather(shadow_mesh, corner / vec2(textureSize(shadow_mesh, 0)), 0);
 }
 
+#if WIDE
+// The depth of the mesh at a place in its map.
+float mesh_depth(int map, vec2 place)
+{
+    int side = shadow_params.mesh_side;
+    ivec2 texel = ivec2(left_texel(place.x, side), map * side + left_texel(place.y, side));
+    return texelFetch(shadow_mesh, texel, 0).x;
+}
+
+// The share of a wide light that passes the mesh to a place in its map (kernel/left.h).
+float wide_past_mesh(int map, vec2 place, float depth)
+{
+    float reach = shadow_params.wide[map].y, away = reach * max(depth, 0.0), sum = 0.0, count = 0.0,
+          nearest = 0.0;
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        vec4 ray = shadow_params.ray[r];
+        for (int step = 0; step < LEFT_STEPS; ++step) {
+            float gap = mesh_depth(map, place + away * left_step(step) * ray.xy + ray.zw);
+            bool before = left_in_way(step, gap, depth, length(ray.xy));
+            sum += before ? gap : 0.0;
+            count += before ? 1.0 : 0.0;
+            nearest = before ? max(gap, nearest) : nearest;
+        }
+    }
+    float off = reach * (depth - sum / max(count, 1.0)), limit = left_limit(depth, nearest),
+          past = 0.0;
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        vec4 ray = shadow_params.ray[r];
+        for (int turn = 0; turn < LEFT_TURNS; ++turn) {
+            bool blocked = count > 0.0 && mesh_depth(map, place + off * ray.xy + ray.zw) < limit;
+            past += blocked ? 0.0 : 1.0 / float(LEFT_RAYS * LEFT_TURNS);
+            ray.xy = vec2(LEFT_TURN_COS * ray.x - LEFT_TURN_SIN * ray.y,
+                          LEFT_TURN_SIN * ray.x + LEFT_TURN_COS * ray.y);
+        }
+    }
+    return past;
+}
+#endif
+
 // The share of light that passes the mesh (kernel/left.h).
 float light_past_mesh(int map, vec3 x)
 {
     vec4 place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
     float side = float(shadow_params.mesh_side), taps = float(MESH_TAPS);
     place.xyz /= place.w;
+#if WIDE
+    if (shadow_params.wide[map].y > 0.0)
+        return wide_past_mesh(map, place.xy, place.z - shadow_params.place[map].z);
+#endif
     // Points behind the map's range get its far end.
     float depth = min(place.z - shadow_params.place[map].z, 1.0);
     vec2 from = vec2(left_from(place.x, side, taps), left_from(place.y, side, taps)),
@@ -120,13 +209,21 @@ float light_past_mesh(int map, vec3 x)
 #endif
 
 #if SHADOW
+#if WIDE && SHADOW == 2
+#define LIGHT_THROUGH(map, place, depth, of_light)                                                 \
+    (shadow_params.wide[map].x > 0.0 ? light_through_wide(map, place, depth, of_light)             \
+                                     : light_through_hair(map, place, depth, of_light))
+#else
+#define LIGHT_THROUGH light_through_hair
+#endif
+
 // The share of a map's light that hair lets through to x. It is 1 outside the map and behind a
 // lamp, where there is no map.
 float hair_leaves(int map, vec3 x)
 {
     CasterPlace place = caster_place(shadow_params.from_world[map], x.x, x.y, x.z);
     vec2 texel = vec2(place.u, place.v);
-    float left = light_through_hair(map, texel, place.z, shadow_params.place[map]);
+    float left = LIGHT_THROUGH(map, texel, place.z, shadow_params.place[map]);
     bool beside = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side)));
     return beside ? 1.0 : left;
 }

@@ -3,6 +3,7 @@
 // across the light.
 #include "common/shared_math.h"
 #include "draw/draw.h"
+#include "kernel/left.h"
 #ifdef __STDC__
 #pragma once
 #endif
@@ -34,6 +35,10 @@ UNIFORM_BLOCK(ShadowParams, shadow_params, BIND_SHADOW)
     mat4 mesh_from_world[MAX_LIGHTS]; // u, v (texels of the mesh's map), depth 0..1, all times w; w
     vec4 place[MAX_LIGHTS]; // number of the light; depth range in m; depth bias of the mesh's map;
                             // texels in a metre across, approximately
+    vec4
+        wide[MAX_LIGHTS]; // x: how far the edge of a wide light moves what it sees across the map,
+                          // in texels for each unit of depth, 0: it has no radius; y: in the mesh's
+    vec4 ray[LEFT_RAYS];  // xy: to a part of a wide light, over its radius; zw: texels, of places
     int maps;
     int side, mesh_side; // texels
     float fibres;        // approx: fibres per metre along the light

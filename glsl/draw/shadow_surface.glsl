@@ -28,7 +28,7 @@ void shadow_find_on(vec3 x, vec3 n)
         vec2 texel = place.xy / place.w;
         int turns = shone && place.z > 0.0 && shadow_covers(texel, shadow_side) ? 1 : 0;
         for (int turn = 0; turn < turns; ++turn)
-            left = light_through_hair(map, texel, place.z, of_light);
+            left = LIGHT_THROUGH(map, texel, place.z, of_light);
 #if SHADOW_BY_MESH
         vec4 mesh_place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
         turns =

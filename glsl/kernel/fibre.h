@@ -46,6 +46,17 @@ SHARED_FUNCTION float fibre_lobe(float sin_i, float cos_i, float sine, float cos
            fibre_bessel(c * sharpness);
 }
 
+// The sharpness of a lobe in light whose directions have the variance `wide`, and its scale.
+SHARED_FUNCTION float fibre_wide_sharpness(float sharpness, float wide)
+{
+    return sharpness / (1.0f + sharpness * wide);
+}
+
+SHARED_FUNCTION float fibre_lobe_scale(float sharpness)
+{
+    return sharpness / (1.0f - SHARED_EXP2(-2.0f * FLOAT(LOG2E) * sharpness));
+}
+
 // Marschner's Gaussian in theta_i + theta_r with the variance 1 / sharpness. `off`: theta_i +
 // theta_r minus the tilt.
 SHARED_FUNCTION float fibre_gauss(float off, float sharpness, float cos_i, float cos_d)

@@ -180,8 +180,11 @@ static Result try_light_counts(LookPrograms *programs, Error *error)
         int lights, maps;
     } counts[] = {{1, 0}, {2, 0}, {2, 1}, {4, 4}};
     static const unsigned features[] = {
-        0, LOOK_SHADOW_DOM, LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
+        0,
+        LOOK_SHADOW_DOM,
+        LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_LIGHTS,
         LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MARSCHNER | LOOK_SCATTERED,
+        LOOK_SHADOW_DOM | LOOK_SHADOW_BY_MESH | LOOK_MARSCHNER | LOOK_LIGHTS | LOOK_WIDE,
         LOOK_MARSCHNER | LOOK_SHADOW_APPROX};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
         look_programs_count(programs, counts[i].lights, counts[i].maps);
@@ -232,7 +235,7 @@ static Result try_shadows(Passes *passes, Error *error)
                              i % CAST_VARIANTS, error));
     if (shadows) TRY(shadows_reserve_mesh(&passes->shadow, 1, error));
     for (int count = 0; count <= 2; count += 2) {
-        base_layer_count(&passes->base, count, shadows ? count : 0);
+        base_layer_count(&passes->base, count, shadows ? count : 0, count > 1);
         TRY(base_layer_build_light(&passes->base, options->shadow.kind, error));
         for (int mesh = 0; mesh < 2; ++mesh)
             TRY(base_layer_build(&passes->base, mesh, options->floor.kind, options->shadow.kind,

@@ -181,6 +181,24 @@ static void fill_draw_params(const RendererOptions *options, const DrawnMesh *me
     draw->seed = options->seed;
 }
 
+// A disc of the angular radius r has the variance r^2 / 4 along each axis. Lamps are as wide as
+// they are from the middle of the hair, but never more than 45 degrees.
+static void set_widths(Drawing *drawing, const RenderFrame *frame)
+{
+    vec3 middle = {0};
+    if (drawing->item_count) drawing_find_middle(&drawing->items[0], middle);
+    for (uint32_t i = 0; i < frame->light_count; ++i) {
+        const Light *light = &frame->lights[i];
+        float radius = glm_rad(light->radius);
+        if (light->kind != LIGHT_DIRECTIONAL) {
+            vec3 place = {light->position[0], light->position[1], light->position[2]};
+            radius = atanf(light->radius / fmaxf(glm_vec3_distance(place, middle), 1e-6f));
+        }
+        radius = fminf(radius, glm_rad(SCENE_WIDE_MOST));
+        drawing->draw.light_color[i][3] = 0.25f * radius * radius;
+    }
+}
+
 // Widens a box in the image by a point of the world. A point in front of the near plane widens it
 // without limit.
 static void add_to_box(DrawParams *draw, vec3 x, int box[4])
@@ -262,6 +280,13 @@ static bool lights_are_simple(const RenderFrame *frame)
     const Ambient *ambient = frame->ambient;
     return !ambient || (!ambient->environment &&
                         memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0);
+}
+
+static bool lights_are_wide(const RenderFrame *frame)
+{
+    for (uint32_t i = 0; i < frame->light_count; ++i)
+        if (frame->lights[i].radius > 0) return true;
+    return false;
 }
 
 void drawing_find_middle(const RenderItem *item, vec3 middle)
@@ -362,10 +387,12 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Dra
     static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // [Aov]
     unsigned features = aovs[options->aov];
     if (options->aov == AOV_NONE)
-        features = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) | shadow_features(options, mesh);
+        features = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) |
+                   (lights_are_wide(frame) ? LOOK_WIDE : 0) | shadow_features(options, mesh);
     drawing->items = items;
     drawing->item_count = item_count;
     fill_draw_params(options, mesh, frame, &drawing->draw);
+    set_widths(drawing, frame);
     drawing->whole = drawing->draw;
     find_boxes(drawing, options, mesh);
     TRY(make_room(drawing, error));

@@ -123,6 +123,7 @@ void light_field_find_lights(LightField *field, const GridScene *scene)
     for (int l = 0; l < field->lights; ++l) {
         light_field_light(scene->draw, l, middle, way);
         light_lattice_turn(lattice, way, field->to_light[l]);
+        field->to_light[l][3] = scene->draw->light_color[l][3];
     }
 }
 

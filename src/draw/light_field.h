@@ -24,7 +24,7 @@ typedef struct GridKind {
     float (*scatter)[3][ORDINATES][ORDINATES]; // [TANGENTS][channel][in][out], owned
     bool has_scatter[TANGENTS];
     float (*first)[TANGENTS][GRID_WIDE]; // [lights], owned: of unit light
-    float first_way[MAX_LIGHTS][3];      // that `first` is for
+    float first_way[MAX_LIGHTS][4];      // that `first` is for
     bool has_first[MAX_LIGHTS];
     float (*gather)[GRID_WIDE][CELL_PATCH_NODES]; // [CELL_PATCHES], owned
     float gather_eye[3];
@@ -38,10 +38,10 @@ typedef struct LightField {
     float longest; // m, segment
     int pieces;    // of a segment
     int lights;
-    bool tinted; // hair has paint
-    float to_light[MAX_LIGHTS]
-                  [3];       // lattice's axes: unit, of lights afar and of lamps to the middle
-    float around[GRID_WIDE]; // radiance by ordinate: what comes from all around
+    bool tinted;                   // hair has paint
+    float to_light[MAX_LIGHTS][4]; // in the lattice's axes: unit vector to a light far away, or
+                                   // from the middle to a lamp; w: its variance, see draw.h
+    float around[GRID_WIDE];       // radiance by ordinate: what comes from all around
     float *walls; // [axes][cells, and one more around]: LightBlocks.open, 1 beside the lattice
     size_t wall_room;
     bool walled;

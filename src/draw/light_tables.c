@@ -26,7 +26,7 @@ static void find_same_ways(const float way[3], float factor, Ways *ways)
 
 // The light that a fibre of the class scatters to each ordinate from light of radiance 1 that comes
 // from `way` (unit vector towards the light), times the fibre's visible width in that direction.
-static void make_first_row(const FibreLobes *lobes, const float way[3], int class,
+static void make_first_row(const FibreLobes *lobes, const float way[4], int class,
                            float row[GRID_WIDE])
 {
     const float *t = TANGENT[class];
@@ -35,7 +35,7 @@ static void make_first_row(const FibreLobes *lobes, const float way[3], int clas
     for (int g = 0; g < ORDINATE_GROUPS; ++g) {
         float f[3][ORDINATE_LANES];
         find_group_ways(g, &out);
-        fibre_lobes_scatter(lobes, t, &out, &in, GRID_BLUR, f);
+        fibre_lobes_scatter(lobes, t, &out, &in, GRID_BLUR + way[3], f);
         for (int l = 0; l < LANES; ++l) {
             float along = t[0] * out.axis[0][l] + t[1] * out.axis[1][l] + t[2] * out.axis[2][l],
                   sine = sqrtf(fmaxf(1 - along * along, 0));

@@ -21,13 +21,14 @@ typedef enum LookFeature {
     LOOK_SHADOW_BY_MESH = 64,
     LOOK_SMOOTH = 128,    // the material's smooth_parts are more than 1
     LOOK_SCATTERED = 256, // the look has the light among its hair
+    LOOK_WIDE = 512,      // lights that have a radius
     // Instead of shading (with LOOK_PAINT alone): white, the tangent, the strand's own colour.
-    LOOK_WHITE = 512,
-    LOOK_TANGENT = 1024,
-    LOOK_STRAND = 1536,
+    LOOK_WHITE = 1024,
+    LOOK_TANGENT = 2048,
+    LOOK_STRAND = 3072,
 } LookFeature;
 
-enum { LOOK_SHADED = 512, LOOK_VARIANTS = 4 * LOOK_SHADED };
+enum { LOOK_SHADED = 1024, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 typedef struct Look {
     MaterialParams material;               // complete but for the batch's size

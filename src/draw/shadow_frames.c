@@ -119,7 +119,7 @@ static void add_mesh_box(const ShadowMesh *mesh, const LightView *view, double b
 // the texel size is taken half-way between near and far, and the slope of depth at the far end,
 // where it is least.
 static void set_mesh_frame(ShadowParams *params, int map, const LightView *view,
-                           const double box[6])
+                           const double box[6], double wide)
 {
     LightFrame frame = light_frame_drawn(view, box, SHADOW_MESH_SIDE, MESH_MARGIN);
     double near = frame.depth[0], far = frame.depth[1], texel = frame.texel,
@@ -128,6 +128,10 @@ static void set_mesh_frame(ShadowParams *params, int map, const LightView *view,
         texel *= 0.5 * (near + far);
         shift = 2 * texel * near / (far * (far - near));
     }
+    // Before a lamp depth on the screen is linear in 1 / distance, as are the places that a ray
+    // meets.
+    params->wide[map][1] =
+        (float)(wide * (far - near) / (view->perspective ? far * near * frame.texel : frame.texel));
     set_rows(params->mesh_from_world[map], frame.rows);
     params->place[map][2] = (float)shift;
     params->mesh_lift = fmaxf(params->mesh_lift, (float)(1.5 * texel));
@@ -138,13 +142,13 @@ static void set_mesh_frame(ShadowParams *params, int map, const LightView *view,
 // width: otherwise the depths of a mesh that is flat towards the light would be mere rounding
 // errors. A lamp may stand inside the mesh's box, so its window encloses the hair as well.
 static void place_mesh(ShadowParams *params, int map, const ShadowMesh *mesh, const LightView *view,
-                       double box[6])
+                       double box[6], double wide)
 {
     if (!view->perspective) empty_box(box);
     add_mesh_box(mesh, view, box);
     if (!view->perspective)
         box[5] = fmax(box[5], box[2] + 0.1 * fmax(box[3] - box[0], box[4] - box[1]));
-    set_mesh_frame(params, map, view, box);
+    set_mesh_frame(params, map, view, box, wide);
 }
 
 ShadowMeshKey shadow_frames_mesh_key(const ShadowFrames *frames)
@@ -178,6 +182,30 @@ static float find_unit(const ShadowFrames *frames, bool perspective, double texe
     return (float)fmin(UNIT, SUM_MAX / (1 + frames->painted + plain));
 }
 
+// The tangent of a directional light's radius, or a lamp's radius in metres.
+static double find_width(const Light *light)
+{
+    double radius = (double)light->radius;
+    return light->kind == LIGHT_DIRECTIONAL ? tan(radius * M_PI / 180) : radius;
+}
+
+// Rays to two rings of a disc, which have together the disc's mean and variance, and over a texel.
+static void find_rays(ShadowParams *params)
+{
+    enum { INNER = 3, OUTER = LEFT_RAYS - INNER };
+    const double inner = sqrt(0.5 * INNER / LEFT_RAYS),
+                 outer = sqrt((0.5 * LEFT_RAYS - INNER * inner * inner) / OUTER);
+    for (int i = 0; i < LEFT_RAYS; ++i) {
+        bool near = i < INNER;
+        double off = near ? inner : outer,
+               turn = 2 * M_PI * (near ? i / (double)INNER : (i + 0.25) / OUTER);
+        params->ray[i][0] = (float)(off * cos(turn));
+        params->ray[i][1] = (float)(off * sin(turn));
+        params->ray[i][2] = (float)((i % 4 + 0.5) / 4 - 0.5);
+        params->ray[i][3] = (float)((i * 3 % LEFT_RAYS + 0.5) / LEFT_RAYS - 0.5);
+    }
+}
+
 static void place_hair(ShadowFrames *frames, int map, int i, const double box[6])
 {
     const LightView *view = &frames->views[i];
@@ -188,6 +216,8 @@ static void place_hair(ShadowFrames *frames, int map, int i, const double box[6]
     params->place[map][0] = (float)frames->lights[i];
     params->place[map][1] = (float)(frame.depth[1] - frame.depth[0]);
     params->place[map][3] = (float)(1 / (frame.texel * distance));
+    params->wide[map][0] = (float)(find_width(&frames->key.lights[frames->lights[i]]) / distance *
+                                   (frame.depth[1] - frame.depth[0]) / (frame.texel * distance));
     frames->casts[map] = (CastParams){.side = params->side,
                                       .map = map,
                                       .texels = (float)(1 / frame.texel),
@@ -205,6 +235,7 @@ void shadow_frames_place(ShadowFrames *frames, int side, float spacing, double (
     params->side = side;
     params->mesh_side = SHADOW_MESH_SIDE;
     find_mean_fibre(frames, spacing, params);
+    find_rays(params);
     for (int i = 0; i < frames->count; ++i) {
         double *box = boxes[i];
         if (!(box[0] <= box[3])) {
@@ -213,7 +244,9 @@ void shadow_frames_place(ShadowFrames *frames, int side, float spacing, double (
             add_mesh_box(mesh, &frames->views[i], box);
         }
         place_hair(frames, params->maps, i, box);
-        if (mesh->version) place_mesh(params, params->maps, mesh, &frames->views[i], box);
+        if (mesh->version)
+            place_mesh(params, params->maps, mesh, &frames->views[i], box,
+                       find_width(&frames->key.lights[frames->lights[i]]));
         ++params->maps;
     }
 }

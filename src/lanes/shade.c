@@ -317,7 +317,7 @@ SIMD_INLINE void sum_colors(const float (*table)[4], const Spots *s, const Nodes
 }
 
 SIMD_INLINE void find_beams(const MaterialParams *m, LaneModel model, Spots *s, const Eye *eye,
-                            Coming *coming, Beams *beams)
+                            Coming *coming, float wide, Beams *beams)
 {
     float sine[W], cosine[W], angle[W];
     for (int i = 0; i < W; ++i) {
@@ -335,6 +335,10 @@ SIMD_INLINE void find_beams(const MaterialParams *m, LaneModel model, Spots *s, 
     for (int p = 0; p < 3; ++p) {
         float sharp = m->lobe_sharpness[p], scale = m->lobe_scale[p],
               tilt = (float)PI * (0.5f - fibre_turn(m->lobe_tilt_sin[p]));
+        if (wide > 0) {
+            sharp = fibre_wide_sharpness(sharp, wide);
+            scale = fibre_lobe_scale(sharp);
+        }
         for (int i = 0; i < W; ++i)
             beams->along[p][i] =
                 model == LANE_GAUSS
@@ -371,7 +375,7 @@ SIMD_INLINE void shade_marschner(const Shader *shader, LaneModel model, Spots *s
     if (look->tints) find_tints(m, look->tints, s, &tints);
     for (int l = 0; l < light->draw->light_count; ++l) {
         lamp_find(light->draw, l, (const float(*)[W])s->x, coming.way, coming.share);
-        find_beams(m, model, s, &eye, &coming, &beams);
+        find_beams(m, model, s, &eye, &coming, light->draw->light_color[l][3], &beams);
         find_nodes(&beams, &nodes);
         if (look->tints)
             sum_tints(look->tints, &tints, &nodes, &beams, sent);

@@ -147,16 +147,138 @@ SIMD_INLINE void shadow_look_approx(const LaneShadow *shadow, int map, const Sha
     }
 }
 
+// The same of a wide light (kernel/left.h).
+SIMD_INLINE void shadow_look_wide(const LaneShadow *shadow, int map, const ShadowLook *look,
+                                  const float width[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
+                                  float left[SHADOW_LOOK])
+{
+    enum { N = SHADOW_LOOK, S = SHADOW_MAP_TILE };
+    int side = shadow->params.side, pitch = shadow->map.tiles * SHADOW_LAYERS * S;
+    const float *depths = shadow->depths + (size_t)map * (size_t)side * (size_t)side;
+    const uint32_t *layers = shadow->layers + (size_t)map * (size_t)side * (size_t)pitch;
+    float reach = shadow->params.wide[map][0], last = shadow->map.last, front[N], sum[N];
+    for (int k = 0; k < N; ++k) front[k] = look->z[k], sum[k] = 0;
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        const float *ray = shadow->params.ray[r];
+        for (int k = 0; k < N; ++k) {
+            float off = reach * simd_positive(look->z[k]);
+            int column = left_texel(look->u[k] + off * ray[0], side),
+                row = left_texel(look->v[k] + off * ray[1], side);
+            front[k] = simd_min(depths[row * side + column], front[k]);
+        }
+    }
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        const float *ray = shadow->params.ray[r];
+        float fibres[N], share[N];
+        for (int k = 0; k < N; ++k) fibres[k] = share[k] = 0;
+        for (int slab = 0; slab < LEFT_SLABS; ++slab) {
+            float middle = reach * left_slab_middle(slab), ends[2] = {0, left_slab_end(slab)};
+            if (slab) ends[0] = left_slab_end(slab - 1);
+            for (int k = 0; k < N; ++k) {
+                float span = look->z[k] - front[k], off = middle * span;
+                int column = left_texel(look->u[k] + off * ray[0] + ray[2], side),
+                    row = left_texel(look->v[k] + off * ray[1] + ray[3], side),
+                    at = row * pitch + column / S * (SHADOW_LAYERS * S) + column % S;
+                float begin = depths[row * side + column], depth[2];
+                for (int e = 0; e < 2; ++e) {
+                    float root = sqrtf(simd_positive(front[k] + ends[e] * span - begin)),
+                          layer = simd_min((float)SHADOW_LAYERS * root, last);
+                    int whole = (int)layer;
+                    share[k] = layer - (float)whole;
+                    depth[e] = layer_depth(layers[at + whole * S], share[k]);
+                }
+                fibres[k] += depth[1] - depth[0];
+            }
+        }
+        for (int k = 0; k < N; ++k) {
+            fibres[k] -= own_layer_depth(width[k], opacity[k], share[k]);
+            sum[k] += left_of_fibres(simd_positive(fibres[k]) * look->inside[k]);
+        }
+    }
+    for (int k = 0; k < N; ++k) left[k] = sum[k] * (1.f / LEFT_RAYS);
+}
+
 SIMD_INLINE void shadow_look_hair(const LaneShadow *shadow, int map, const ShadowLook *look,
                                   const float radius[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
                                   float left[SHADOW_LOOK])
 {
     float width[SHADOW_LOOK], across = 2 * shadow->params.place[map][3];
     for (int k = 0; k < SHADOW_LOOK; ++k) width[k] = radius[k] * across;
-    if (shadow->layers)
+    if (shadow->layers && shadow->params.wide[map][0] > 0)
+        shadow_look_wide(shadow, map, look, width, opacity, left);
+    else if (shadow->layers)
         shadow_look_deep(shadow, map, look, width, opacity, left);
     else
         shadow_look_approx(shadow, map, look, left);
+}
+
+// The places of points in a map of the mesh, in texels and depths; `covered`: 1 inside the map,
+// else 0.
+SIMD_INLINE void shadow_find_mesh(const LaneShadow *shadow, int map, const float x[3][SHADOW_LOOK],
+                                  float u[SHADOW_LOOK], float v[SHADOW_LOOK],
+                                  float depth[SHADOW_LOOK], float covered[SHADOW_LOOK])
+{
+    const float(*rows)[4] = (const float(*)[4])shadow->params.mesh_from_world[map];
+    float wide = (float)shadow->params.mesh_side, shift = shadow->params.place[map][2];
+    for (int k = 0; k < SHADOW_LOOK; ++k) {
+        float inverse = 1 / caster_row(rows, 3, x[0][k], x[1][k], x[2][k]),
+              across = caster_row(rows, 0, x[0][k], x[1][k], x[2][k]) * inverse,
+              down = caster_row(rows, 1, x[0][k], x[1][k], x[2][k]) * inverse,
+              z = caster_row(rows, 2, x[0][k], x[1][k], x[2][k]) * inverse - shift;
+        bool on = (across >= 0) & (down >= 0) & (across <= wide) & (down <= wide);
+        covered[k] = on ? 1.f : 0.f;
+        u[k] = across, v[k] = down;
+        depth[k] = z;
+    }
+}
+
+// The share of a wide light that passes the mesh (kernel/left.h) to points at these places.
+SIMD_INLINE void shadow_look_wide_mesh(const LaneShadow *shadow, int map,
+                                       const float u[SHADOW_LOOK], const float v[SHADOW_LOOK],
+                                       const float depth[SHADOW_LOOK], float past[SHADOW_LOOK])
+{
+    enum { N = SHADOW_LOOK };
+    int side = shadow->params.mesh_side;
+    const float *depths = shadow->mesh.depths + (size_t)map * (size_t)side * (size_t)side;
+    float reach = shadow->params.wide[map][1], sum[N], count[N], nearest[N], off[N];
+    for (int k = 0; k < N; ++k) sum[k] = count[k] = nearest[k] = 0;
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        const float *ray = shadow->params.ray[r];
+        for (int step = 0; step < LEFT_STEPS; ++step) {
+            float aside = reach * left_step(step),
+                  length = sqrtf(ray[0] * ray[0] + ray[1] * ray[1]);
+            for (int k = 0; k < N; ++k) {
+                float away = aside * simd_positive(depth[k]);
+                int column = left_texel(u[k] + away * ray[0] + ray[2], side),
+                    row = left_texel(v[k] + away * ray[1] + ray[3], side);
+                float gap = depths[row * side + column];
+                bool before = left_in_way(step, gap, depth[k], length);
+                sum[k] += before ? gap : 0;
+                count[k] += before ? 1.f : 0.f;
+                nearest[k] = before ? simd_max(gap, nearest[k]) : nearest[k];
+            }
+        }
+    }
+    for (int k = 0; k < N; ++k) {
+        off[k] = reach * (depth[k] - sum[k] / simd_max(count[k], 1));
+        nearest[k] = left_limit(depth[k], nearest[k]);
+        past[k] = 0;
+    }
+    for (int r = 0; r < LEFT_RAYS; ++r) {
+        const float *ray = shadow->params.ray[r];
+        float across = ray[0], down = ray[1];
+        for (int turn = 0; turn < LEFT_TURNS; ++turn) {
+            for (int k = 0; k < N; ++k) {
+                int column = left_texel(u[k] + off[k] * across + ray[2], side),
+                    row = left_texel(v[k] + off[k] * down + ray[3], side);
+                bool blocked = (count[k] > 0) & (depths[row * side + column] < nearest[k]);
+                past[k] += blocked ? 0 : 1.f / (LEFT_RAYS * LEFT_TURNS);
+            }
+            float turned = LEFT_TURN_COS * across - LEFT_TURN_SIN * down;
+            down = LEFT_TURN_SIN * across + LEFT_TURN_COS * down;
+            across = turned;
+        }
+    }
 }
 
 // The share past the mesh, 0 .. 1, for points on hair and surfaces; `covered`: 1 inside the map,
@@ -165,22 +287,20 @@ SIMD_INLINE void shadow_look_mesh(const LaneShadow *shadow, int map, const float
                                   int taps, float past[SHADOW_LOOK], float covered[SHADOW_LOOK])
 {
     enum { N = SHADOW_LOOK, Q = SHADOW_MESH_SQUARE };
-    const float(*rows)[4] = (const float(*)[4])shadow->params.mesh_from_world[map];
     int side = shadow->params.mesh_side, squares = side / Q, texel[N], open[N], any = 0;
     const float *depths = shadow->mesh.depths + (size_t)map * (size_t)side * (size_t)side;
     const float(*bounds)[2] =
         (const float(*)[2])shadow->mesh.bounds + (size_t)map * (size_t)squares * (size_t)squares;
-    float wide = (float)side, shift = shadow->params.place[map][2], u[N], v[N], depth[N];
+    float wide = (float)side, u[N], v[N], depth[N];
+    shadow_find_mesh(shadow, map, x, u, v, depth, covered);
+    if (shadow->params.wide[map][1] > 0) {
+        shadow_look_wide_mesh(shadow, map, u, v, depth, past);
+        return;
+    }
     for (int k = 0; k < N; ++k) {
-        float inverse = 1 / caster_row(rows, 3, x[0][k], x[1][k], x[2][k]),
-              across = caster_row(rows, 0, x[0][k], x[1][k], x[2][k]) * inverse,
-              down = caster_row(rows, 1, x[0][k], x[1][k], x[2][k]) * inverse,
-              z = caster_row(rows, 2, x[0][k], x[1][k], x[2][k]) * inverse - shift;
-        bool on = (across >= 0) & (down >= 0) & (across <= wide) & (down <= wide);
-        covered[k] = on ? 1.f : 0.f;
-        depth[k] = simd_min(z, 1); // what lies behind all of the map
-        u[k] = left_from(across, wide, (float)taps);
-        v[k] = left_from(down, wide, (float)taps);
+        depth[k] = simd_min(depth[k], 1); // points behind the map's range get its far end
+        u[k] = left_from(u[k], wide, (float)taps);
+        v[k] = left_from(v[k], wide, (float)taps);
         int column = (int)u[k], row = (int)v[k];
         u[k] -= (float)column, v[k] -= (float)row;
         texel[k] = row * side + column;

@@ -38,18 +38,28 @@ static void forget(BaseLayer *base)
     }
 }
 
-void base_layer_count(BaseLayer *base, int light_count, int map_count)
+static bool is_wide(const DrawParams *draw)
 {
-    if (base->light_count == light_count && base->map_count == map_count) return;
+    for (int i = 0; i < draw->light_count; ++i)
+        if (draw->light_color[i][3] > 0) return true;
+    return false;
+}
+
+void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide)
+{
+    if (base->light_count == light_count && base->map_count == map_count && base->wide == wide)
+        return;
     forget(base);
     base->light_count = light_count;
     base->map_count = map_count;
+    base->wide = wide;
 }
 
 Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error)
 {
     int unrolled = look_unrolled(base->light_count);
     const ShaderDefine defines[] = {{"LIGHTS", 1},
+                                    {"WIDE", base->wide},
                                     {"LIGHT_COUNT", unrolled},
                                     {"SHADOW_MAPS", unrolled ? base->map_count : 0},
                                     {"SHADOW", shadow},
@@ -65,6 +75,7 @@ Result base_layer_build(BaseLayer *base, bool mesh, FloorKind floor, Shadow shad
 {
     int unrolled = look_unrolled(base->light_count);
     const ShaderDefine defines[] = {{"LIGHTS", 1},
+                                    {"WIDE", base->wide},
                                     {"LIGHT_COUNT", unrolled},
                                     {"SHADOW_MAPS", unrolled ? base->map_count : 0},
                                     {"SHADOW", shadow},
@@ -171,7 +182,8 @@ static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarg
     bool mesh = base->mesh.triangle_count > 0, seen = floor_is_seen(scene->floor, scene->draw);
     FloorKind floor = seen ? scene->floor->kind : FLOOR_NONE;
     Shadow shadow = scene->shadow->options.kind;
-    base_layer_count(base, scene->draw->light_count, scene->shadow->params.maps);
+    base_layer_count(base, scene->draw->light_count, scene->shadow->params.maps,
+                     is_wide(scene->draw));
     if (mesh) TRY(base_layer_build_light(base, shadow, error));
     if (mesh || seen) TRY(base_layer_build(base, mesh, floor, shadow, error));
     gpu_timer_begin(timer, "draw_mesh");

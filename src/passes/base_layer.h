@@ -22,6 +22,7 @@ typedef struct BaseLayer {
     GLuint light;               // program of the mesh
     GLuint finish[2][3];        // programs: with a mesh, and by FloorKind
     int light_count, map_count; // that these are for
+    bool wide;                  // the same: lights have a radius
     GLuint vertex_array;        // without attributes
     DrawParams drawn;           // what the target's surface and base show
     uint64_t shadowed;          // Shadows.version of it
@@ -41,8 +42,9 @@ typedef struct BaseScene {
 // Whether there is anything but background.
 bool base_layer_is_needed(const BaseLayer *base, const Floor *floor);
 
-// Sets the number of lights and shadow maps. Programs for other numbers are dropped.
-void base_layer_count(BaseLayer *base, int light_count, int map_count);
+// Sets the number of lights and shadow maps, and whether lights have a radius. Programs for others
+// are dropped.
+void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide);
 
 // Compile the program that lights the mesh, and the one that joins mesh, floor and background, for
 // a floor of this kind and shadows of this kind, unless they are there. `shadow` stays the same for

@@ -14,8 +14,8 @@ enum {
 // How a pass is built: the values of its file's macros, and what a lane processes.
 typedef struct PassShape {
     const char *file;
-    int items, shadow, beside, walled, group; // group 0: a strand for each lane, -1: a cell
-    bool hair;                                // has variants for hair
+    int items, shadow, wide, beside, walled, group; // group 0: a strand for each lane, -1: a cell
+    bool hair;                                      // has variants for hair
 } PassShape;
 
 static const PassShape SHAPES[LIGHT_PASSES] = {
@@ -26,6 +26,8 @@ static const PassShape SHAPES[LIGHT_PASSES] = {
     [LIGHT_PASS_PLACES] = {.file = "draw/light_slots.comp", .group = -1, .beside = 2},
     [LIGHT_PASS_AREAS] = {.file = "draw/light_items.comp", .items = 1, .hair = true},
     [LIGHT_PASS_LIT] = {.file = "draw/light_items.comp", .items = 2, .shadow = 2, .hair = true},
+    [LIGHT_PASS_LIT_WIDE] =
+        {.file = "draw/light_items.comp", .items = 2, .shadow = 2, .wide = 1, .hair = true},
     [LIGHT_PASS_LIT_ALL] = {.file = "draw/light_items.comp", .items = 2, .hair = true},
     [LIGHT_PASS_FILL] = {.file = "draw/light_fill.comp", .group = ORDINATE_GROUP},
     [LIGHT_PASS_SWEEP] = {.file = "draw/light_sweep.comp", .group = SWEEP_GROUP},
@@ -57,6 +59,7 @@ Result light_pass_build(LightPrograms *programs, LightPass pass, unsigned varian
                                     {"SMOOTH", (variant & CAST_SMOOTH) != 0},
                                     {"ITEMS", shape->items},
                                     {"SHADOW", shape->shadow},
+                                    {"WIDE", shape->wide},
                                     {"BESIDE", shape->beside},
                                     {"WALLED", shape->walled},
                                     {NULL, 0}};

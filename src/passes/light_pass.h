@@ -11,8 +11,9 @@ typedef enum LightPass {
     LIGHT_PASS_BESIDE_SLOTS,
     LIGHT_PASS_PLACES,
     LIGHT_PASS_AREAS,
-    LIGHT_PASS_LIT,     // by a light with a map of hair
-    LIGHT_PASS_LIT_ALL, // by one without
+    LIGHT_PASS_LIT,      // by a light with a map of hair
+    LIGHT_PASS_LIT_WIDE, // by one that has a radius, too
+    LIGHT_PASS_LIT_ALL,  // by one without a map
     LIGHT_PASS_FILL,
     LIGHT_PASS_SWEEP,
     LIGHT_PASS_SWEEP_WALLED,

@@ -292,7 +292,10 @@ static Result fill_range(LightPasses *passes, const GridScene *scene, ShadowCast
     TRY(add_items(passes, scene, casters, LIGHT_PASS_AREAS, -1, range, error));
     for (int l = 0; l < passes->field.lights; ++l)
         TRY(add_items(passes, scene, casters,
-                      scene->map_of[l] < 0 ? LIGHT_PASS_LIT_ALL : LIGHT_PASS_LIT, l, range, error));
+                      scene->map_of[l] < 0                 ? LIGHT_PASS_LIT_ALL
+                      : scene->draw->light_color[l][3] > 0 ? LIGHT_PASS_LIT_WIDE
+                                                           : LIGHT_PASS_LIT,
+                      l, range, error));
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_FILL, 0, error));
     glUniform2i(2, range[0], range[1]);
     light_pass_run_cells(&passes->programs, LIGHT_PASS_FILL, range[1] - range[0]);

@@ -25,6 +25,7 @@ Result look_programs_build(LookPrograms *programs, unsigned features, Error *err
                                     {"LIGHT_COUNT", unrolled},
                                     {"SHADOW_MAPS", unrolled ? programs->map_count : 0},
                                     {"LIGHTS", (features & LOOK_LIGHTS) != 0},
+                                    {"WIDE", (features & LOOK_WIDE) != 0},
                                     {"MARSCHNER", model},
                                     {"AOV", (int)(features / LOOK_SHADED)},
                                     {"PAINT", (features & LOOK_PAINT) != 0},

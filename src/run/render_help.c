@@ -84,7 +84,9 @@ static const char *const SCENE_KEYS[][3] = {
      "up to 8 lights: directional, point or spot; direction is the direction in which the light "
      "travels. A point or spot light has its intensity at `distance` (m) and falls off with the "
      "square of the distance. A spot is full up to `inner` degrees off its axis and dark beyond "
-     "`outer`. The first light casts shadows, and so do others with \"shadow\": true (unless "
+     "`outer`. `radius` (0) softens shadows and highlights: degrees as seen from the hair for "
+     "directional lights, metres for others. The first light casts shadows, and so do others with "
+     "\"shadow\": true (unless "
      "--shadow is none). Without this key the lights are those of --look: three (studio) or two "
      "(plain); an empty list leaves ambient light only"},
     {"$schema", "\"/usr/share/tractrix/scene.schema.json\"",

@@ -73,6 +73,7 @@ CONDITION(has_floor, scene->run.floor != FLOOR_NONE)
 CONDITION(has_matt_floor, scene->run.floor == FLOOR_PLANE)
 CONDITION(has_environment, *scene->run.environment)
 CONDITION(has_sky, !*scene->run.environment)
+CONDITION(has_look_lights, !scene->own_lights && !*scene->run.environment)
 CONDITION(turns, scene->run.turntable != 0)
 CONDITION(frames_hair, scene->run.eye.automatic && scene->eye.count == 0)
 CONDITION(knows_jumps, scene->run.teleport != TELEPORT_NONE)
@@ -123,6 +124,7 @@ static const struct {
     {"export_followers", exports, "there is no --export"},
     {"margin", frames_hair, "--eye is given"},
     {"environment_strength environment_turn", has_environment, "there is no --environment"},
+    {"light_radius", has_look_lights, "the scene or --environment replaces the lights of the look"},
     {"sky ground", has_sky, "--environment is given"},
     {"turn_lights ease_in ease_out", turns, "there is no --turntable"},
     {"shadow_size shadow_strands shadow_opacity", has_shadows, "--shadow is none"},

@@ -48,6 +48,7 @@ void scene_set_lights(Scene *scene)
     }
     scene->light_count = set->count;
     memcpy(scene->lights, set->lights, sizeof set->lights);
+    for (uint32_t i = 0; i < set->count; ++i) scene->lights[i].radius = scene->run.light_radius;
     if (!set->turned || !scene->run.eye.automatic || scene->eye.count) return;
     axes_find(&axes, scene->run.camera_up);
     for (uint32_t i = 0; i < set->count; ++i) {

@@ -59,8 +59,11 @@ typedef struct Light {
     float position[3];  // m, in the world; not directional
     float distance;     // m, > 0; not directional
     float inner_deg, outer_deg; // 0 <= inner < outer <= 90; spot
-    bool shadow;                // casts shadows, if shadows are on
+    float radius; // >= 0: of a directional light, as seen from the hair, degrees; of others, m
+    bool shadow;  // casts shadows, if shadows are on
 } Light;
+
+#define SCENE_WIDE_MOST 45 // degrees: radius of a directional light
 
 enum { SCENE_MAX_LIGHTS = 8, SCENE_MAX_SECTIONS = 1024, SCENE_MAX_BODIES = 16 };
 

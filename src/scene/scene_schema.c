@@ -335,6 +335,8 @@ static json_t *light(LightKind kind)
     }
     put(properties, "color", reference("colorValue"), &good);
     put(properties, "intensity", real(0, SCENE_INTENSITY_MAX), &good);
+    put(properties, "radius",
+        real(0, kind == LIGHT_DIRECTIONAL ? SCENE_WIDE_MOST : SCENE_OFFSET_MAX), &good);
     put(properties, "shadow", json_pack("{s:s}", "type", "boolean"), &good);
     json_t *object = closed(properties);
     put(object, "required", needed, &good);

@@ -271,12 +271,13 @@ static Result read_light_shadow(Light *light, const JsonPlace *parent, const jso
 // `light` must hold the defaults.
 static Result read_light(Light *light, const JsonPlace *place, const json_t *value, Error *error)
 {
-    static const char *const DIRECTIONAL[] = {"type",      "direction", "color",
-                                              "intensity", "shadow",    NULL};
+    static const char *const DIRECTIONAL[] = {"type",   "direction", "color", "intensity",
+                                              "radius", "shadow",    NULL};
     static const char *const POINT[] = {"type",      "position", "distance", "color",
-                                        "intensity", "shadow",   NULL};
-    static const char *const SPOT[] = {"type",  "position", "distance",  "direction", "inner",
-                                       "outer", "color",    "intensity", "shadow",    NULL};
+                                        "intensity", "radius",   "shadow",   NULL};
+    static const char *const SPOT[] = {"type",   "position", "distance", "direction",
+                                       "inner",  "outer",    "color",    "intensity",
+                                       "radius", "shadow",   NULL};
     static const char *const *const NAMES[] = {
         [LIGHT_DIRECTIONAL] = DIRECTIONAL, [LIGHT_POINT] = POINT, [LIGHT_SPOT] = SPOT};
     const json_t *type = json_object_get(value, "type");
@@ -287,6 +288,9 @@ static Result read_light(Light *light, const JsonPlace *place, const json_t *val
     TRY(json_check_object(place, value, NAMES[kind], error));
     TRY(read_quantity(&light->intensity, place, value, "intensity", 0, SCENE_INTENSITY_MAX,
                       "a factor", error));
+    TRY(read_quantity(&light->radius, place, value, "radius", 0,
+                      kind == LIGHT_DIRECTIONAL ? SCENE_WIDE_MOST : SCENE_OFFSET_MAX,
+                      kind == LIGHT_DIRECTIONAL ? "degrees" : "metres", error));
     if (kind != LIGHT_POINT) TRY(read_direction(light, place, value, error));
     if (kind != LIGHT_DIRECTIONAL) {
         TRY(read_vector(light->position, place, value, "position", true, error));

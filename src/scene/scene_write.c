@@ -147,6 +147,8 @@ static json_t *write_light(const Light *light)
     }
     good = put(object, "color", scene_param_write_floats(color, 3)) && good;
     good = put(object, "intensity", scene_param_write_float(light->intensity)) && good;
+    if (light->radius > 0)
+        good = put(object, "radius", scene_param_write_float(light->radius)) && good;
     good = put(object, "shadow", json_boolean(light->shadow)) && good;
     return finish(object, good);
 }

@@ -13,24 +13,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const Light LIGHTS[] = {{.direction = {0.48f, 0.6f, 0.64f},
-                                .color = {1, 0.9f, 0.8f},
-                                .intensity = 0.6f,
-                                .shadow = true},
-                               {.kind = LIGHT_POINT,
-                                .position = {-0.4f, 0.3f, 0.3f},
-                                .distance = 0.4f,
-                                .color = {0.5f, 0.7f, 1},
-                                .intensity = 0.5f},
-                               {.kind = LIGHT_SPOT,
-                                .position = {0.1f, 0.5f, 0.5f},
-                                .direction = {0, -0.70710678f, -0.70710678f},
-                                .inner_deg = 5,
-                                .outer_deg = 20,
-                                .distance = 0.6f,
-                                .color = {1, 1, 1},
-                                .intensity = 0.5f,
-                                .shadow = true}};
+static Light lights[] = {{.direction = {0.48f, 0.6f, 0.64f},
+                          .color = {1, 0.9f, 0.8f},
+                          .intensity = 0.6f,
+                          .shadow = true},
+                         {.kind = LIGHT_POINT,
+                          .position = {-0.4f, 0.3f, 0.3f},
+                          .distance = 0.4f,
+                          .color = {0.5f, 0.7f, 1},
+                          .intensity = 0.5f},
+                         {.kind = LIGHT_SPOT,
+                          .position = {0.1f, 0.5f, 0.5f},
+                          .direction = {0, -0.70710678f, -0.70710678f},
+                          .inner_deg = 5,
+                          .outer_deg = 20,
+                          .distance = 0.6f,
+                          .color = {1, 1, 1},
+                          .intensity = 0.5f,
+                          .shadow = true}};
 static const Ambient AMBIENT = {.sky = {0.8f, 0.9f, 1}, .ground = {0.3f, 0.25f, 0.2f}};
 static const float COLOR[3] = {0.8f, 0.6f, 0.5f};
 
@@ -84,8 +84,8 @@ static Shown draw_by_opengl(const RendererOptions *options, const float turn[4],
     View view = look();
     const Ambient around = sky == STAGE_ENVIRONMENT ? stage_ambient(sky) : AMBIENT;
     RenderFrame frame = {.view = &view,
-                         .lights = LIGHTS,
-                         .light_count = sizeof LIGHTS / sizeof *LIGHTS,
+                         .lights = lights,
+                         .light_count = sizeof lights / sizeof *lights,
                          .ambient = &around,
                          .head_translation = {0.01f, 0, 0.02f}};
     memcpy(frame.head_rotation, turn, sizeof frame.head_rotation);
@@ -154,8 +154,8 @@ static void cast_shadows(Shade *shade, const LaneBaseScene *base)
                        shade->position);
     shade->caster = (MappedCaster){.position = (const float(*)[4])(void *)shade->position,
                                    .material = look_material(&drawing->looks[0], batch)};
-    LaneShadowScene scene = {.lights = LIGHTS,
-                             .light_count = sizeof LIGHTS / sizeof *LIGHTS,
+    LaneShadowScene scene = {.lights = lights,
+                             .light_count = sizeof lights / sizeof *lights,
                              .casters = {&shade->caster, 1},
                              .mesh = &base->mesh,
                              .mesh_version = 1};
@@ -248,14 +248,16 @@ static void c_shows_what_opengl_does(void **state)
         MeshShading shading;
         Shadow shadow;
         StageSky sky;
-    } cases[] = {{1, FLOOR_NONE, MESH_SKIN, SHADOW_NONE, STAGE_ENVIRONMENT},
-                 {1, FLOOR_PLANE, MESH_MATT, SHADOW_DOM, STAGE_SKY},
-                 {1, FLOOR_SHADOW, MESH_SKIN, SHADOW_DOM, STAGE_SKY},
-                 {2, FLOOR_PLANE, MESH_SKIN, SHADOW_APPROX, STAGE_ENVIRONMENT},
-                 {4, FLOOR_NONE, MESH_MATT, SHADOW_NONE, STAGE_ENVIRONMENT}};
+        float radius; // of the sun, degrees
+    } cases[] = {{1, FLOOR_NONE, MESH_SKIN, SHADOW_NONE, STAGE_ENVIRONMENT, 0},
+                 {1, FLOOR_PLANE, MESH_MATT, SHADOW_DOM, STAGE_SKY, 0},
+                 {1, FLOOR_SHADOW, MESH_SKIN, SHADOW_DOM, STAGE_SKY, 8},
+                 {2, FLOOR_PLANE, MESH_SKIN, SHADOW_APPROX, STAGE_ENVIRONMENT, 0},
+                 {4, FLOOR_NONE, MESH_MATT, SHADOW_NONE, STAGE_ENVIRONMENT, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         RendererOptions options =
             with(cases[i].samples, cases[i].floor, cases[i].shading, cases[i].shadow);
+        lights[0].radius = cases[i].radius;
         Shown shown = draw_by_opengl(&options, TURN, cases[i].sky);
         LaneBaseScene scene = make_scene(TURN);
         LaneBase base = {0};
@@ -266,6 +268,7 @@ static void c_shows_what_opengl_does(void **state)
         }
         NEEDED(lane_base_draw(&base, &scene, error));
         compare(&shown, &base.shown);
+        lights[0].radius = 0;
         free_shade(&shade);
         lane_base_destroy(&base);
         free_shown(&shown);

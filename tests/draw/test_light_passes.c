@@ -24,6 +24,10 @@ static const float LEAST_SHARE = 0.403f;
 // clang-format off
 #define SUN {.kind = LIGHT_DIRECTIONAL, .direction = {0.48f, 0.6f, 0.64f}, .color = {1, 0.8f, 0.5f}, \
     .intensity = 2, .shadow = true}
+#define WIDE_SUN {.kind = LIGHT_DIRECTIONAL, .direction = {0.48f, 0.6f, 0.64f}, .color = {1, 0.8f, 0.5f}, \
+    .intensity = 2, .radius = 12, .shadow = true}
+#define WIDE_LAMP {.kind = LIGHT_POINT, .position = {-150, 100, 40}, .distance = 100, \
+    .color = {1, 1, 1}, .intensity = 1, .radius = 25, .shadow = true}
 #define BACK {.kind = LIGHT_DIRECTIONAL, .direction = {-0.6f, 0, -0.8f}, .color = {0.3f, 0.6f, 1}, \
     .intensity = 1}
 #define LAMP {.kind = LIGHT_POINT, .position = {-150, 100, 40}, .distance = 100, \
@@ -60,6 +64,11 @@ static const Case CASES[] = {
      .scatter = SCATTER_GRID,
      .mesh = true,
      .sky = STAGE_ENVIRONMENT},
+    {.name = "a wide sun and a wide lamp, a mesh",
+     .lights = {WIDE_SUN, WIDE_LAMP},
+     .light_count = 2,
+     .scatter = SCATTER_GRID,
+     .mesh = true},
     {.name = "lamp, spot",
      .lights = {LAMP, SPOT},
      .light_count = 2,

@@ -12,6 +12,8 @@
 // Initialisers of lights.
 // clang-format off
 #define SUN {.direction = {0.48f, 0.6f, 0.64f}, .color = {1, 0.8f, 0.5f}, .intensity = 1, .shadow = true}
+#define WIDE_SUN {.direction = {0.48f, 0.6f, 0.64f}, .color = {1, 0.8f, 0.5f}, .intensity = 1, \
+    .radius = 15, .shadow = true}
 #define BACK {.direction = {-0.6f, 0, -0.8f}, .color = {0.3f, 0.6f, 1}, .intensity = 1}
 #define LAMP {.kind = LIGHT_POINT, .position = {-50, 100, 90}, .distance = 100, .color = {1, 1, 1}, \
     .intensity = 1, .shadow = true}
@@ -56,6 +58,16 @@ static const Case CASES[] = {
      .shading = SHADING_MARSCHNER,
      .lobes = LOBES_GAUSS,
      .sky = STAGE_SKY},
+    {.name = "energy, a wide sun and a narrow lamp, deep shadows",
+     .lights = {WIDE_SUN, LAMP},
+     .light_count = 2,
+     .shading = SHADING_MARSCHNER,
+     .shadow = SHADOW_DOM},
+    {.name = "gauss, a wide sun",
+     .lights = {WIDE_SUN},
+     .light_count = 1,
+     .shading = SHADING_MARSCHNER,
+     .lobes = LOBES_GAUSS},
     {.name = "energy, varied brightness",
      .lights = {SUN, BACK},
      .light_count = 2,

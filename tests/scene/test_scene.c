@@ -48,6 +48,7 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_true(point->kind == LIGHT_POINT && point->position[1] == 2 && point->distance == 1);
     assert_true(spot->kind == LIGHT_SPOT && spot->direction[1] == -1 && spot->distance == 2.5f);
     assert_true(spot->inner_deg == 20 && spot->outer_deg == 30);
+    assert_true(spot->radius == 0.25f && scene.lights[0].radius == 0);
     assert_true(scene.lights[0].shadow && !scene.lights[1].shadow && spot->shadow);
     scene_destroy(&scene);
 }
@@ -443,6 +444,8 @@ static const struct {
      "lights[0].color: got 7"},
     {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"shadow\": 1}]}",
      "lights[0].shadow: got 1, expected true or false"},
+    {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"radius\": 46}]}",
+     "lights[0].radius: got 46"},
     {"{" HAIR ", \"lights\": [{\"direction\": [0, 0, 1], \"intensity\": -1}]}",
      "lights[0].intensity: got -1"},
     {"{" HAIR ", \"lights\": [1,2,3,4,5,6,7,8,9]}", "got 9 lights, expected 8 at most"},

@@ -214,6 +214,7 @@ float *shadow_stage_light(ShadowStage *stage, const float (*points)[4], uint32_t
     const GpuLimits *limits = &fixture_gpu()->limits;
     const ShaderDefine defines[] = {{"SHADOW", stage->shadow.options.kind},
                                     {"SHADOW_BY_MESH", stage->mesh.triangle_count > 0},
+                                    {"WIDE", stage->light.radius > 0},
                                     {NULL, 0}};
     uint32_t groups = (count + 7) / 8;
     if (stage->way == SHADOW_BY_LANES) return find_by_lanes(stage, points, count);

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// Lights that have a radius: soft shadows against the share of a disc that an edge hides, and lobes
+// against their mean over the disc.
+#include "support/shadow_stage.h"
+
+#include "glsl/kernel/fibre.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const float RADIUS_DEG = 10;
+enum { POINTS = 25 };
+
+// The share of a unit disc on one side of a straight line, at the distance t from its middle.
+static double disc_beyond(double t)
+{
+    t = fmin(fmax(t, -1), 1);
+    return 0.5 + (t * sqrt(1 - t * t) + asin(t)) / M_PI;
+}
+
+// Points at the depth `down` along z or x, 1.2 of the disc's radius to either side of `edge`.
+static void fill_points(float points[POINTS][4], bool along_x, float edge, float down, double wide)
+{
+    for (int i = 0; i < POINTS; ++i) {
+        float at = edge + (float)(1.2 * wide * (2.0 * i / (POINTS - 1) - 1));
+        points[i][0] = along_x ? at : 0.1f;
+        points[i][1] = -down;
+        points[i][2] = along_x ? 0.02f : at;
+        points[i][3] = 1;
+    }
+}
+
+// Eight rays in two rings resolve the share of a strand's edge that lies as here to 0.14, three
+// turns of them that of a mesh's to 0.1. They have the disc's mean, but for the depth of what hides
+// it.
+static void expect_shares(const float light[POINTS], const double expected[POINTS])
+{
+    double sum = 0, most = 0;
+    for (int i = 0; i < POINTS; ++i) {
+        sum += ((double)light[i] - expected[i]) / POINTS;
+        most = fmax(most, fabs((double)light[i] - expected[i]));
+    }
+    print_message("off by %.3f at most, by %.4f in the mean\n", most, sum);
+    if (!(most <= 0.14 && fabs(sum) <= 0.02))
+        fail_msg("off by %g at most, by %g in the mean", most, sum);
+}
+
+static void a_meshs_edge_hides_its_share(void **state)
+{
+    (void)state;
+    const double down = 0.4, wide = down * tan((double)RADIUS_DEG * M_PI / 180);
+    Mesh mesh = shadow_stage_square(-0.05f, 0.3f);
+    for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
+        Light light = LIGHT_ABOVE;
+        ShadowStage stage;
+        float points[POINTS][4];
+        double expected[POINTS];
+        light.radius = RADIUS_DEG;
+        shadow_stage_open(&stage, shadow_stage_layers(1), 0.001f, 0.3f, &mesh, &light);
+        shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, way);
+        fill_points(points, true, 0.3f, 0.05f + (float)down, wide);
+        for (int i = 0; i < POINTS; ++i)
+            expected[i] = disc_beyond(((double)points[i][0] - 0.3) / wide);
+        float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
+        expect_shares(share, expected);
+        free(share);
+        shadow_stage_close(&stage);
+    }
+    mesh_destroy(&mesh);
+}
+
+static void a_lamps_radius_is_a_length(void **state)
+{
+    (void)state;
+    // The lamp at 2 m sees the edge 0.3 m below 1.7 m away.
+    const double up = 2, down = 0.4, size = 0.3, wide = size * down / (up + 0.05);
+    Mesh mesh = shadow_stage_square(-0.05f, 0.3f);
+    for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
+        Light light = LIGHT_LAMP;
+        ShadowStage stage;
+        float points[POINTS][4];
+        double expected[POINTS], edge = 0.3 * (up + 0.05 + down) / (up + 0.05);
+        light.position[0] = light.position[2] = 0;
+        light.radius = (float)size;
+        shadow_stage_open(&stage, shadow_stage_layers(1), 0.001f, 0.3f, &mesh, &light);
+        shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, way);
+        fill_points(points, true, (float)edge, 0.05f + (float)down, wide);
+        for (int i = 0; i < POINTS; ++i)
+            expected[i] = disc_beyond(((double)points[i][0] - edge) / wide);
+        float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
+        expect_shares(share, expected);
+        free(share);
+        shadow_stage_close(&stage);
+    }
+    mesh_destroy(&mesh);
+}
+
+// One strand, as wide as the disc looks from the points: it lies between two edges.
+static void a_strand_hides_its_share(void **state)
+{
+    (void)state;
+    const double down = 0.4, half = 0.06, wide = down * tan((double)RADIUS_DEG * M_PI / 180);
+    for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
+        Light light = LIGHT_ABOVE;
+        ShadowStage stage;
+        float points[POINTS][4];
+        double expected[POINTS];
+        light.radius = RADIUS_DEG;
+        shadow_stage_open(&stage, shadow_stage_layers(1), (float)half, 0.8f, NULL, &light);
+        shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, way);
+        fill_points(points, false, (float)half, (float)down, wide);
+        for (int i = 0; i < POINTS; ++i) {
+            double z = (double)points[i][2];
+            expected[i] =
+                1 - 0.8 * (disc_beyond((z + half) / wide) - disc_beyond((z - half) / wide));
+        }
+        float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
+        expect_shares(share, expected);
+        free(share);
+        shadow_stage_close(&stage);
+    }
+}
+
+// All of the disc stands above a surface aslant, which so has no shadow of its own.
+static void a_lit_mesh_stays_lit(void **state)
+{
+    (void)state;
+    for (float slope = -1; slope <= 1; slope += 0.5f) {
+        Mesh mesh = shadow_stage_square(-0.5f, 0.5f);
+        Light light = LIGHT_ABOVE;
+        float points[POINTS][4];
+        ShadowStage stage;
+        light.radius = RADIUS_DEG;
+        for (int v = 0; v < 4; ++v) mesh.position[v][1] += slope * mesh.position[v][2];
+        shadow_stage_open(&stage, shadow_stage_layers(1), 0.001f, 0, &mesh, &light);
+        shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, SHADOW_BY_LANES);
+        for (int i = 0; i < POINTS; ++i) {
+            float z = 0.8f * ((float)i / (POINTS - 1) - 0.5f);
+            memcpy(points[i], ((float[4]){0.05f, -0.5f + slope * z, z, 1}), sizeof points[i]);
+        }
+        float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
+        for (int i = 0; i < POINTS; ++i) shadow_assert_near((double)share[i], 1, 1e-6);
+        free(share);
+        shadow_stage_close(&stage);
+        mesh_destroy(&mesh);
+    }
+}
+
+// The mean of a lobe over the disc's directions, along the fibre, where a disc of radius r has the
+// density 2 sqrt(r^2 - x^2) / (pi r^2).
+static void a_lobe_is_widened_as_its_mean(void **state)
+{
+    (void)state;
+    enum { PARTS = 400 };
+    const double radius = 15 * M_PI / 180, wide = radius * radius / 4;
+    for (double sigma = 5 * M_PI / 180; sigma < 0.4; sigma *= 2) {
+        float sharp = (float)(1 / (sigma * sigma)),
+              wider = fibre_wide_sharpness(sharp, (float)wide);
+        double peak = 0, off = 0;
+        for (int i = -60; i <= 60; ++i) {
+            double in = 0.2, out = -0.2 + i * M_PI / 180, mean = 0;
+            for (int k = 0; k < PARTS; ++k) {
+                double x = radius * (2 * (k + 0.5) / PARTS - 1),
+                       density = 2 * sqrt(radius * radius - x * x) / (M_PI * radius * radius);
+                mean += density * 2 * radius / PARTS *
+                        (double)fibre_lobe((float)sin(in + x), (float)cos(in + x), (float)sin(out),
+                                           (float)cos(out), sharp, fibre_lobe_scale(sharp));
+            }
+            double one = (double)fibre_lobe((float)sin(in), (float)cos(in), (float)sin(out),
+                                            (float)cos(out), wider, fibre_lobe_scale(wider));
+            peak = fmax(peak, mean);
+            off = fmax(off, fabs(mean - one));
+        }
+        print_message("lobe of %.0f degrees: off by %.3f of its peak\n", sigma * 180 / M_PI,
+                      off / peak);
+        // A disc has no tails as a Gaussian has: the worst is a lobe narrower than the disc.
+        if (!(off < 0.12 * peak)) fail_msg("off by %g of %g", off, peak);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_meshs_edge_hides_its_share),
+        cmocka_unit_test(a_lamps_radius_is_a_length),
+        cmocka_unit_test(a_strand_hides_its_share),
+        cmocka_unit_test(a_lit_mesh_stays_lit),
+        cmocka_unit_test(a_lobe_is_widened_as_its_mean),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
