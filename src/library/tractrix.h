@@ -171,8 +171,8 @@ TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const cha
 
 // On by one frame, 1 / fps seconds. `head`: where the head and the mesh are at its end, reached
 // evenly; NULL: as the scene says, or where they are once a pose was given. Only queues GPU work.
-// TRACTRIX_USAGE for a pose where a frame is no whole number of steps (fps and sim_rate), or where
-// the mesh deforms.
+// TRACTRIX_USAGE for a pose where a frame is no whole number of steps (fps and sim_rate), where the
+// mesh deforms, or where the scene has several bodies.
 TractrixResult tractrix_simulation_advance(TractrixSimulation *simulation, const TractrixPose *head,
                                            TractrixError *error);
 // The same with the vertices of the mesh (TractrixMesh.deforms) at the frame's end, in the world:

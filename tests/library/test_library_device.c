@@ -376,6 +376,34 @@ static void refuses_what_has_no_effect(void **state)
     tractrix_scene_destroy(empty);
 }
 
+static void a_scene_of_several_bodies_moves_as_it_says(void **state)
+{
+    static const char JSON[] =
+        "{\"look\": \"plain\", \"bodies\": [{\"sections\": [{\"file\": \"curls.tfx\"}]}, "
+        "{\"mesh\": \"ball.obj\", \"head\": {\"translate\": [\"t\", 0, 0]}, "
+        "\"sections\": [{\"file\": \"curls.tfx\"}]}]}";
+    const TractrixPose pose = {.rotation = {0, 0, 0, 1}};
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t triangle[3] = {0, 1, 2};
+    const TractrixMesh mesh = {.size = sizeof mesh,
+                               .vertex_count = 3,
+                               .triangle_count = 1,
+                               .position = corners,
+                               .triangle = triangle,
+                               .metres_per_unit = 1};
+    TractrixScene *scene;
+    TractrixSimulation *simulation;
+    (void)state;
+    WELL(tractrix_scene_parse(&scene, JSON, "assets", &error));
+    library_refused(tractrix_scene_set_mesh(scene, &mesh, &error), TRACTRIX_USAGE, "2 bodies");
+    WELL(tractrix_simulation_create(&simulation, device, scene, &error));
+    WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
+                    "2 bodies");
+    tractrix_simulation_destroy(simulation);
+    tractrix_scene_destroy(scene);
+}
+
 // --- Lifetimes.
 
 static void children_keep_their_parents(void **state)
@@ -601,6 +629,7 @@ static void works_in_a_borrowed_context(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_scene_of_several_bodies_moves_as_it_says),
         cmocka_unit_test(maps_strands_in_their_order),
         cmocka_unit_test(follows_poses),
         cmocka_unit_test(moves_as_the_scene_would),
