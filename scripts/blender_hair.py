@@ -5,9 +5,9 @@
     blender -b --python blender_hair.py -- export groom.abc -o hair.tfx --scene scene.json
     blender -b --python blender_hair.py -- import sim.usda -o sim.blend
 
-Needs Blender 3.4 or newer and its numpy. docs/blender.md describes it. Blender's side of a function is in Blender's
-units with z up, Tractrix's side in metres with y up; names say which where both occur. S strands of P points (or of
-`sizes`), V points in all, F frames.
+Needs Blender 3.4 or newer and its numpy. docs/blender.md describes it. Data of Blender are in Blender's units with z up,
+data of Tractrix in metres with y up; if a function has both, names tell them apart. S: strands, P: points of a strand (or
+`sizes`), V: points in all, F: frames.
 """
 
 import argparse
@@ -40,15 +40,15 @@ bl_info = {
 }
 
 DONE, FAILED, USAGE, BAD_INPUT = 0, 1, 2, 3
-TOLERANCE_M = 1e-4  # how far roots may be off a rigid motion
+TOLERANCE_M = 1e-4  # largest deviation of roots from a rigid motion
 MAX_LIGHTS = 8
-USUAL_RADII = (1.0, 0.01)  # what Blender gives curves whose radius nobody has set
+USUAL_RADII = (1.0, 0.01)  # Blender's default radii of curves
 POLY_CURVE = 1  # `curve_type` of curves that are polylines
-KEYS_APART = 10.0  # what Blender puts between two absolute shape keys
+KEYS_APART = 10.0  # distance of absolute shape keys in Blender
 
 
 class HairError(Exception):
-    """One line `place: what is wrong: what was expected`, and the exit status."""
+    """An error with one line, `place: what is wrong: what was expected`, and an exit status."""
 
     def __init__(self, message: str, status: int = BAD_INPUT):
         super().__init__(message)
@@ -56,7 +56,7 @@ class HairError(Exception):
 
 
 def say(message: str) -> None:
-    """One line for the user on standard error."""
+    """Prints one line for the user to standard error."""
     print(f"blender_hair: {message}", file=sys.stderr, flush=True)
 
 
@@ -65,7 +65,7 @@ def say(message: str) -> None:
 
 @dataclass
 class Hair:
-    """Strands in metres, y up, one after the other, each from root to tip."""
+    """Strands in metres, y up, concatenated, each from root to tip."""
 
     points: np.ndarray  # (V, 3) float32
     sizes: np.ndarray  # (S,) int32, points of each strand
@@ -82,12 +82,12 @@ class Hair:
 
     @property
     def even(self) -> bool:
-        """Whether all strands have as many points."""
+        """Whether all strands have the same number of points."""
         return bool((self.sizes == self.sizes[0]).all())
 
 
 def write_whole(path: str, write: Callable[[str], None]) -> None:
-    """Lets `write` fill a temporary file in the folder of `path`, which appears complete or not at all."""
+    """Calls `write` with a temporary file in the folder of `path`, then renames it: the file appears complete or not at all."""
     folder, name = os.path.split(os.path.abspath(path))
     temporary = os.path.join(folder, f".{os.getpid()}_{name}")
     try:
@@ -101,7 +101,7 @@ def write_whole(path: str, write: Callable[[str], None]) -> None:
 
 
 def resample(hair: Hair, count: int) -> Hair:
-    """`hair` with `count` points a strand, at equal distances along its lines; root and tip stay exactly."""
+    """`hair` resampled to `count` points for each strand, at equal distances along its lines; root and tip are exact."""
     low, share = np.empty((len(hair.sizes), count), np.int64), np.empty((len(hair.sizes), count), np.float64)
     for s, (first, size) in enumerate(zip(hair.first, hair.sizes)):
         line = hair.points[first : first + size].astype(np.float64)
@@ -114,7 +114,7 @@ def resample(hair: Hair, count: int) -> Hair:
     low, share = low.ravel(), share.ravel()
 
     def mix(values: Optional[np.ndarray]) -> Optional[np.ndarray]:
-        """Values of the old points, on the last axis but one, at the new ones."""
+        """Interpolates values of the old points (last axis but one) to the new points."""
         if values is None:
             return None
         t = share if values.ndim == 1 else share[:, None]
@@ -127,7 +127,7 @@ def resample(hair: Hair, count: int) -> Hair:
 
 
 def tfx_binary(hair: Hair) -> bytes:
-    """A TressFX 4 file of strands that have as many points each."""
+    """A TressFX 4 file, for strands with equal numbers of points."""
     strands, size = len(hair.sizes), int(hair.sizes[0])
     movable = np.ones((strands, size, 1), np.float32)
     movable[:, 0] = 0
@@ -146,7 +146,7 @@ def tfx_binary(hair: Hair) -> bytes:
 
 
 def tfx_text(hair: Hair) -> str:
-    """A TressFX 2 file, for strands that differ in their number of points."""
+    """A TressFX 2 file, for strands with different numbers of points."""
     uv = np.zeros((len(hair.sizes), 2), np.float32) if hair.uv is None else hair.uv
     lines = [f"numStrands {len(hair.sizes)}", "is sorted 1"]
     for s, (first, size) in enumerate(zip(hair.first, hair.sizes)):
@@ -156,7 +156,7 @@ def tfx_text(hair: Hair) -> str:
 
 
 def npz_arrays(hair: Hair) -> dict:
-    """The arrays of a `.npz` file: `positions` (S, P, 3) or `points` and `sizes`, and what else `hair` has."""
+    """The arrays of a `.npz` file: `positions` (S, P, 3) or `points` and `sizes`, and the other properties of `hair`."""
     arrays = {"fps": np.float32(hair.fps), "unit": np.float32(1), "up": np.array("y")}
     if hair.even:
         shape = (len(hair.sizes), int(hair.sizes[0]), 3)
@@ -172,7 +172,7 @@ def npz_arrays(hair: Hair) -> dict:
 
 
 def write_hair(path: str, hair: Hair) -> None:
-    """Writes `.tfx` (TressFX 4, or TressFX 2 text where strands differ in size) or `.npz`."""
+    """Writes `.tfx` (TressFX 4, or TressFX 2 text if strands have different numbers of points) or `.npz`."""
     if path.endswith(".npz"):
 
         def write(name: str) -> None:
@@ -196,7 +196,7 @@ def write_hair(path: str, hair: Hair) -> None:
 
 
 def read_npz(path: str) -> Hair:
-    """Reads what `npz_arrays` describes."""
+    """Reads a file with the arrays of `npz_arrays`."""
     try:
         with np.load(path, allow_pickle=False) as file:
             data = {name: file[name] for name in file.files}
@@ -224,7 +224,7 @@ def read_npz(path: str) -> Hair:
 
 
 def in_metres(hair: Hair, unit: float, up_z: bool) -> Hair:
-    """`hair` whose file has another unit or axis, in metres with y up; changed in place."""
+    """Converts `hair` from its file's unit and axis to metres with y up, in place."""
     for name in ("points", "frames", "radius"):
         values = getattr(hair, name)
         if values is not None and unit != 1:
@@ -274,7 +274,7 @@ def read_usda(path: str) -> Hair:
 
 
 def convert_hair(path: str, units: tuple = ()) -> Hair:
-    """Reads a cache, numbered files, Alembic or any other hair file by tractrix-convert; `units`: its --unit and --up."""
+    """Reads a cache, numbered files, Alembic or any other hair file with tractrix-convert; `units`: its --unit and --up."""
     here = os.path.dirname(os.path.abspath(__file__))
     beside = os.pathsep.join(os.path.join(here, *folder) for folder in (("..", "out", "release"), ("..", "..", "bin")))
     name = "tractrix-convert"
@@ -296,12 +296,12 @@ def convert_hair(path: str, units: tuple = ()) -> Hair:
 
 
 def to_y_up(points: np.ndarray) -> np.ndarray:
-    """(..., 3) with z up -> y up."""
+    """Converts (..., 3) from z up to y up."""
     return np.stack((points[..., 0], points[..., 2], -points[..., 1]), -1)
 
 
 def to_z_up(points: np.ndarray) -> np.ndarray:
-    """(..., 3) with y up -> z up."""
+    """Converts (..., 3) from y up to z up."""
     return np.stack((points[..., 0], -points[..., 2], points[..., 1]), -1)
 
 
@@ -311,13 +311,13 @@ def unit_of(scene) -> float:
 
 
 def srgb(color) -> list:
-    """Linear RGB -> sRGB, both 0..1, cut to that."""
+    """Linear RGB -> sRGB, both clamped to 0..1."""
     values = [min(max(float(c), 0.0), 1.0) for c in list(color)[:3]]
     return [round(12.92 * c if c <= 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055, 6) for c in values]
 
 
 def linear(color) -> list:
-    """sRGB of a scene file, `#rrggbb` or three numbers -> linear RGB; a name counts as white."""
+    """sRGB of a scene file, `#rrggbb` or three numbers -> linear RGB; a color name gives white."""
     if isinstance(color, str):
         match = re.fullmatch(r"#([0-9a-fA-F]{6})", color)
         color = [int(match[1][i : i + 2], 16) / 255 for i in (0, 2, 4)] if match else [1, 1, 1]
@@ -325,9 +325,9 @@ def linear(color) -> list:
 
 
 def fit_rigid(rest: np.ndarray, moved: np.ndarray) -> tuple:
-    """Least-squares R (3, 3), t (3,) with moved = R rest + t (Kabsch 1976), and the largest distance that is left.
+    """Least-squares R (3, 3), t (3,) with moved = R rest + t (Kabsch 1976), and the largest remaining distance.
 
-    Both (N, 3) float64. Without three points off one line the rotation is not defined: HairError.
+    Both arrays are (N, 3) float64. If all points lie on one line the rotation is not defined: HairError.
     """
     a, b = rest - rest.mean(0), moved - moved.mean(0)
     spread = np.linalg.svd(a, compute_uv=False) if len(a) > 2 else np.zeros(3)
@@ -341,7 +341,7 @@ def fit_rigid(rest: np.ndarray, moved: np.ndarray) -> tuple:
 
 
 def rotation_vector(rotation: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """Axis times angle (rad) of a rotation matrix (3, 3), of all such vectors the one next to `before`."""
+    """Axis times angle (rad) of a rotation matrix (3, 3). Of all such vectors, the one nearest to `before`."""
     skew = 0.5 * np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
     sine, cosine = float(np.linalg.norm(skew)), 0.5 * (float(np.trace(rotation)) - 1)
     angle = math.atan2(sine, cosine)
@@ -379,7 +379,7 @@ def head_track(roots: np.ndarray, fps: float) -> tuple:
 
 @dataclass
 class Piece:
-    """The strands of one object at one frame, in Blender's world; arrays as in Hair, `uv` and others may be missing."""
+    """The strands of one object at one frame, in Blender's world. Arrays as in Hair; `uv` and others may be None."""
 
     name: str
     points: np.ndarray
@@ -387,16 +387,16 @@ class Piece:
     uv: Optional[np.ndarray] = None
     radius: Optional[np.ndarray] = None
     color: Optional[np.ndarray] = None
-    surface: object = None  # the mesh object that it grows on
+    surface: object = None  # the mesh object that the hair grows on
     material: object = None
 
 
 @dataclass
 class ExportOptions:
-    """What the user chose; see the parser's help."""
+    """The options; see the parser's help."""
 
     output: str
-    frames: Optional[tuple] = None  # first and last, None: the present frame
+    frames: Optional[tuple] = None  # first and last; None: the current frame
     objects: list = field(default_factory=list)
     children: str = "parents"
     resample: int = 0
@@ -407,7 +407,7 @@ class ExportOptions:
 
 
 def into_world(obj, points: np.ndarray) -> np.ndarray:
-    """Points (N, 3) of an object -> the world, float64."""
+    """Transforms points (N, 3) of an object to the world, float64."""
     matrix = np.array(obj.matrix_world, np.float64)
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -420,13 +420,14 @@ def column(collection, name: str, width: int, kind=np.float32) -> np.ndarray:
 
 
 def attribute_of(data, name: str, member: str, width: int) -> Optional[np.ndarray]:
-    """A named attribute of a Curves or Mesh, None if it has none of `width` numbers."""
+    """A named attribute of a Curves or Mesh; None if there is none with `width` numbers."""
     found = data.attributes.get(name)
     return column(found.data, member, width) if found and len(found.data) else None
 
 
 def curves_piece(obj, context) -> Optional[Piece]:
-    """The strands of a Curves object after its modifiers: points of poly and Catmull-Rom curves, others as they are drawn."""
+    """The strands of a Curves object after its modifiers. Poly and Catmull-Rom curves give their points, other curves the
+    points that Blender draws."""
     depsgraph = context.evaluated_depsgraph_get()
     data = obj.evaluated_get(depsgraph).data
     if len(data.curves) == 0:
@@ -460,7 +461,7 @@ def points_of_curves(obj, evaluated) -> Piece:
 
 
 def drawn_curves():
-    """A node group that makes poly curves of all curves, with the points that Blender draws them by."""
+    """A node group that converts all curves to poly curves with the points that Blender draws."""
     tree = geometry_tree("Tractrix lines")
     begin, end, lines = (tree.nodes.new(kind) for kind in ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeResampleCurve"))
     if hasattr(lines, "mode"):
@@ -485,7 +486,8 @@ def geometry_tree(name: str):
 
 
 def spline_piece(obj, depsgraph) -> Optional[Piece]:
-    """The splines of an old Curve object, as importers make them: poly splines as they are, others as they are drawn."""
+    """The splines of an old Curve object, as importers make them. Poly splines give their points, others the points that
+    Blender draws."""
     evaluated = obj.evaluated_get(depsgraph)
     data = evaluated.to_curve(depsgraph, apply_modifiers=True)
     straight = [s for s in data.splines if s.type == "POLY" or (s.type == "NURBS" and s.order_u == 2)]
@@ -493,7 +495,7 @@ def spline_piece(obj, depsgraph) -> Optional[Piece]:
         points = [column(s.points, "co", 4)[:, :3] for s in straight]
         radius = np.concatenate([column(s.points, "radius", 1) for s in straight])
         depth = obj.data.bevel_depth
-        # Alembic's importer leaves the file's widths in the radii of curves without a bevel.
+        # Alembic's importer stores the file's widths as radii of curves without a bevel.
         radius = radius * depth if depth > 0 else 0.5 * radius if (radius != 1).any() else None
     else:
         points, radius = drawn_lines(obj, evaluated), None
@@ -505,12 +507,12 @@ def spline_piece(obj, depsgraph) -> Optional[Piece]:
 
 
 def drawn_lines(obj, evaluated) -> list:
-    """The polylines (P, 3) that an old Curve object without bevel is drawn as."""
+    """The polylines (P, 3) that Blender draws for an old Curve object without bevel."""
     if obj.data.bevel_depth > 0 or obj.data.extrude > 0:
         raise HairError(f"object '{obj.name}': Bezier or NURBS splines with a bevel: expected none, or poly splines")
     mesh = evaluated.to_mesh()
     points = column(mesh.vertices, "co", 3)
-    joined = np.zeros(len(points), bool)  # whether a point continues the line of the one before it
+    joined = np.zeros(len(points), bool)  # whether a point continues the line of the previous point
     edges = np.sort(column(mesh.edges, "vertices", 2, np.int32), axis=1)
     joined[edges[edges[:, 1] - edges[:, 0] == 1, 1]] = True
     evaluated.to_mesh_clear()
@@ -529,7 +531,7 @@ def particle_radius(settings, size: int) -> np.ndarray:
 
 
 def particle_pieces(obj, depsgraph, children: str) -> list:
-    """The hair of an object's particle systems: the paths that the viewport draws, `children` says of which hair."""
+    """The hair of an object's particle systems: the paths that the viewport draws, for the hair that `children` selects."""
     pieces = []
     evaluated = obj.evaluated_get(depsgraph)
     for modifier in evaluated.modifiers:
@@ -560,7 +562,8 @@ def particle_pieces(obj, depsgraph, children: str) -> list:
 
 
 def hair_objects(context, names: list) -> list:
-    """The objects to export: those named, else all visible ones with hair; old curves count only where there is no other."""
+    """The objects to export: the named ones, otherwise all visible objects with hair. Old curves are used only if there is no
+    other hair."""
     context.view_layer.update()
     visible = [o for o in context.view_layer.objects if o.visible_get()]
     if names:
@@ -573,7 +576,7 @@ def hair_objects(context, names: list) -> list:
 
 
 def gather(context, objects: list, children: str) -> list:
-    """The pieces of all objects at the scene's present frame."""
+    """The pieces of all objects at the scene's current frame."""
     depsgraph = context.evaluated_depsgraph_get()
     pieces = []
     for obj in objects:
@@ -588,7 +591,7 @@ def gather(context, objects: list, children: str) -> list:
 
 
 def whole_strands(piece: Piece) -> Piece:
-    """The piece without strands of one point, with a word about them."""
+    """The piece without strands of one point; prints a line about these."""
     keep = piece.sizes > 1
     if keep.all():
         return piece
@@ -629,7 +632,8 @@ def nearest_uv(roots: np.ndarray, surface, depsgraph) -> Optional[np.ndarray]:
 
 
 def join(pieces: list, scene, depsgraph, surface) -> Hair:
-    """One Hair of all pieces. A property that one piece lacks is dropped with a warning; texture coordinates are looked up."""
+    """Joins all pieces to one Hair. A property that a piece lacks is dropped with a warning; missing texture coordinates are
+    looked up on the surface."""
     for piece in pieces:
         on = piece.surface or surface
         if piece.uv is None and on:
@@ -653,17 +657,17 @@ def join(pieces: list, scene, depsgraph, surface) -> Hair:
 
 
 def is_usual(radius: np.ndarray) -> bool:
-    """Whether all radii are one that Blender gives without being asked."""
+    """Whether all radii have one of Blender's default values."""
     return any((np.abs(radius - usual) < 1e-6).all() for usual in USUAL_RADII)
 
 
 def frames_per_second(scene) -> float:
-    """Frames of Blender's timeline in a second."""
+    """Frames per second of Blender's timeline."""
     return scene.render.fps / scene.render.fps_base
 
 
 def collect(context, options: ExportOptions) -> tuple:
-    """The scene's Hair, its pieces at the first frame, and roots (F, S, 3) in metres, y up, None without frames."""
+    """The scene's Hair, its pieces at the first frame, and the roots (F, S, 3) in metres, y up (None without frames)."""
     scene = context.scene
     objects = hair_objects(context, options.objects)
     if options.frames:
@@ -719,7 +723,7 @@ def mesh_text(objects: list, scene, depsgraph) -> str:
 
 
 def body_samples(context, objects: list, numbers: range) -> dict:
-    """The arrays of a deforming mesh: evaluated positions (F, V, 3) at each frame, m, y up; faces are those of the first one."""
+    """The arrays of a deforming mesh: evaluated positions (F, V, 3) at each frame, m, y up, and the faces of the first frame."""
     scene, frames, faces, shapes = context.scene, [], [], []
     for number in numbers:
         scene.frame_set(number)
@@ -751,7 +755,7 @@ def body_samples(context, objects: list, numbers: range) -> dict:
 
 
 def write_body(context, options: ExportOptions, meshes: list) -> None:
-    """The mesh over all frames as `.npz`, which hair is bound to."""
+    """Writes the mesh that hair is bound to, over all frames, as `.npz`."""
     first, last = options.frames or (context.scene.frame_current,) * 2
     body = body_samples(context, meshes, range(first, last + 1))
     path = os.path.splitext(options.mesh)[0] + ".npz"
@@ -765,7 +769,7 @@ def write_body(context, options: ExportOptions, meshes: list) -> None:
 
 
 def head_meshes(context, options: ExportOptions, pieces: list) -> list:
-    """The mesh objects to export: the one named, else those that hair grows on, else all visible ones."""
+    """The mesh objects to export: the named one, otherwise those that hair grows on, otherwise all visible ones."""
     if options.mesh_object:
         obj = context.scene.objects.get(options.mesh_object)
         if not obj or obj.type != "MESH":
@@ -779,7 +783,7 @@ def head_meshes(context, options: ExportOptions, pieces: list) -> list:
 
 
 def camera_pose(scene, depsgraph, middle: np.ndarray) -> dict:
-    """Eye, target, up direction (Tractrix's axes, m) and vertical field of view (degrees) at the scene's present frame."""
+    """Eye, target, up direction (Tractrix's axes, m) and vertical field of view (degrees) at the scene's current frame."""
     render = scene.render
     camera = scene.camera.evaluated_get(depsgraph)
     matrix = np.array(camera.matrix_world, np.float64)
@@ -803,7 +807,7 @@ def rounded(values, digits: int = 7) -> list:
 
 
 def camera_keys(context, options: ExportOptions, middle: np.ndarray) -> dict:
-    """The scene file's members that say where the camera is. What Tractrix does not have is warned about."""
+    """The scene file's members for the camera. Prints a warning for properties that Tractrix does not have."""
     scene, render = context.scene, context.scene.render
     if scene.camera.data.type != "PERSP":
         raise HairError(f"camera '{scene.camera.name}': type {scene.camera.data.type}: expected PERSP, the only one that Tractrix has")
@@ -840,7 +844,7 @@ def camera_keys(context, options: ExportOptions, middle: np.ndarray) -> dict:
 
 
 def roll_off(pose: dict, up: np.ndarray) -> float:
-    """Degrees by which a camera that looks the pose's way with the given up direction is rolled against the pose."""
+    """The roll in degrees of the pose against a camera with the same direction of view and the given up direction."""
     forward = pose["target"] - pose["eye"]
     forward = forward / np.linalg.norm(forward)
     right = np.cross(forward, up)
@@ -849,7 +853,8 @@ def roll_off(pose: dict, up: np.ndarray) -> float:
 
 
 def light_of(obj, unit: float) -> dict:
-    """One light of a scene file. Blender's W/m2 of a sun and W of others become what a white matt surface shows (1/pi)."""
+    """One light of a scene file. Blender's W/m2 of a sun and W of other lights are converted to the light that a white matt
+    surface reflects (1/pi)."""
     light, matrix = obj.data, np.array(obj.matrix_world, np.float64)
     way = to_y_up(-matrix[:3, 2] / np.linalg.norm(matrix[:3, 2]))
     peak = max(*light.color, 1e-9)
@@ -872,7 +877,7 @@ def light_of(obj, unit: float) -> dict:
 
 
 def light_keys(context) -> dict:
-    """The scene file's members that say what shines: lights, sky, ground, background, exposure, tones."""
+    """The scene file's members for light: lights, sky, ground, background, exposure, tone curve."""
     scene = context.scene
     lamps = [o for o in context.view_layer.objects if o.type == "LIGHT" and o.visible_get() and o.data.energy > 0]
     radiance = world_radiance(scene)
@@ -894,7 +899,7 @@ def light_keys(context) -> dict:
 
 
 def world_radiance(scene) -> list:
-    """Linear RGB of an even world; one with a picture or a sky counts as its plain colour, with a warning."""
+    """Linear RGB of a uniform world. A world with a picture or a sky is replaced by its plain colour, with a warning."""
     world = scene.world
     if not world:
         return [0.0, 0.0, 0.0]
@@ -925,7 +930,7 @@ def color_keys(material, folder: str) -> dict:
 
 
 def map_keys(node, material, folder: str) -> dict:
-    """`color_map` of an image texture that is a PNG file; anything else is left out with a warning."""
+    """`color_map` for an image texture that is a PNG file; other textures are left out with a warning."""
     name = bpy.path.abspath(node.image.filepath) if node.type == "TEX_IMAGE" and node.image else ""
     if name.lower().endswith(".png") and os.path.exists(name):
         return {"color_map": os.path.relpath(name, folder)}
@@ -968,7 +973,7 @@ def scene_members(context, options: ExportOptions, hair: Hair, pieces: list, hea
 
 
 def moving_head(roots: Optional[np.ndarray], options: ExportOptions, fps: float) -> Optional[dict]:
-    """The head's track if the roots move, and as a rigid body; reports the residual."""
+    """The head's track if the roots move like a rigid body; reports the residual."""
     if roots is None or np.abs(roots - roots[0]).max() <= 1e-7:
         return None
     try:
@@ -987,7 +992,7 @@ def moving_head(roots: Optional[np.ndarray], options: ExportOptions, fps: float)
 
 
 def export_hair(context, options: ExportOptions) -> None:
-    """Writes all that `options` ask for; the scene's frame is put back."""
+    """Writes everything that `options` ask for, then restores the scene's frame."""
     present = context.scene.frame_current
     try:
         if not options.output:
@@ -1062,7 +1067,7 @@ def new_curves(context, name: str, hair: Hair):
 
 
 def converted_curves(context, name: str, points: np.ndarray, hair: Hair):
-    """A Curves object by way of an old Curve: Blender 3 cannot add curves otherwise. `points` are Blender's."""
+    """Makes a Curves object from an old Curve, because Blender 3 has no other way. `points` are in Blender's units."""
     old = bpy.data.curves.new(name, "CURVE")
     old.dimensions = "3D"
     for first, size in zip(hair.first, hair.sizes):
@@ -1080,8 +1085,9 @@ def converted_curves(context, name: str, points: np.ndarray, hair: Hair):
 
 
 def animate(context, obj, hair: Hair) -> None:
-    """Gives a Curves object the positions of `hair.frames`: a hidden mesh has them as absolute shape keys, one a frame, and
-    a node modifier takes them over. All of it is in the .blend file; between frames positions are interpolated linearly.
+    """Animates a Curves object with the positions of `hair.frames`: a hidden mesh has them as absolute shape keys, one for
+    each frame, and a node modifier copies them. Everything is stored in the .blend file; positions between frames are
+    interpolated linearly.
     """
     scene, start = context.scene, context.scene.frame_start
     mesh = bpy.data.meshes.new(obj.name + " motion")
@@ -1096,7 +1102,8 @@ def animate(context, obj, hair: Hair) -> None:
 
 
 def key_shapes(context, mesh, samples: np.ndarray, kind: str, at: str):
-    """An object of `mesh` with samples (F, V, 3; m, y up) as absolute shape keys; `at`: which one is seen, in terms of `frame`."""
+    """An object of `mesh` with samples (F, V, 3; m, y up) as absolute shape keys. `at`: the visible sample as a function of
+    `frame`."""
     samples = (to_z_up(samples) / unit_of(context.scene)).astype(np.float32)
     mesh.vertices.foreach_set("co", samples[0].ravel())
     obj = bpy.data.objects.new(mesh.name, mesh)
@@ -1131,15 +1138,16 @@ def take_positions(obj, carrier) -> None:
 
 
 def set_rate(scene, fps: float) -> None:
-    """Sets the frames per second of Blender's timeline, which takes whole numbers over a base."""
+    """Sets the frames per second of Blender's timeline, which stores an integer and a divisor."""
     scene.render.fps = max(round(fps), 1)
     scene.render.fps_base = scene.render.fps / fps
 
 
 def import_hair(context, path: str, scale: Optional[float] = None, units: tuple = ()) -> None:
-    """Imports the strands of `path` with their frames. Binary USD and `.abc` go to Blender's importers where it has them.
+    """Imports the strands of `path` with their frames. Binary USD and `.abc` are read by Blender's importers if it has them.
 
-    `scale`: metres of one unit of these; None: 1 for Blender's importers, as the file says (or guessed) for tractrix-convert.
+    `scale`: metres of one unit in these files; None: 1 for Blender's importers; for tractrix-convert the file's unit or a
+    guess.
     """
     kind = os.path.splitext(path)[1].lower()
     if not os.path.exists(path) and "%" not in path:
@@ -1161,7 +1169,8 @@ def import_hair(context, path: str, scale: Optional[float] = None, units: tuple 
 
 
 def radius_for(path: str, units: tuple, count: int) -> Optional[np.ndarray]:
-    """(count,) the radius that tractrix-convert gives a file without one, m: Blender's own would be centimetres. None without it."""
+    """(count,) the radius in m that tractrix-convert finds for a file without radii; Blender's default would be centimetres.
+    None without tractrix-convert."""
     try:
         return np.full(count, convert_hair(path, units).radius.mean(), np.float32)
     except HairError as error:
@@ -1170,7 +1179,7 @@ def radius_for(path: str, units: tuple, count: int) -> Optional[np.ndarray]:
 
 
 def by_blender(path: str, kind: str, scale: Optional[float]) -> bool:
-    """Imports by Blender's own importer, if it was built with one."""
+    """Imports with Blender's own importer, if Blender was built with it."""
     if not getattr(bpy.app.build_options, "alembic" if kind == ".abc" else "usd"):
         return False
     if kind == ".abc":
@@ -1184,7 +1193,8 @@ def by_blender(path: str, kind: str, scale: Optional[float]) -> bool:
 
 
 def track_values(track: dict, key: str, times: np.ndarray, default) -> np.ndarray:
-    """(F, ...) values of a track of a scene file: monotone cubic (Fritsch and Butland 1984) or linear, constant outside."""
+    """(F, ...) values of a track of a scene file: monotone cubic (Fritsch and Butland 1984) or linear interpolation, constant
+    outside."""
     keys = [(k["time"], k[key]) for k in track.get("keys", []) if key in k]
     if not keys:
         return np.tile(np.asarray(default, np.float64), (len(times),) + (1,) * np.ndim(default))
@@ -1211,7 +1221,7 @@ def track_values(track: dict, key: str, times: np.ndarray, default) -> np.ndarra
 
 
 def key_pose(obj, matrices: list, start: int) -> None:
-    """Places `obj` at the matrices, one a frame from `start`; one alone: without keys."""
+    """Places `obj` at the matrices, one for each frame from `start`. A single matrix sets no keys."""
     obj.rotation_mode = "QUATERNION"
     for f, matrix in enumerate(matrices):
         obj.location, obj.rotation_quaternion, _ = matrix.decompose()
@@ -1221,7 +1231,7 @@ def key_pose(obj, matrices: list, start: int) -> None:
 
 
 def camera_matrix(eye: np.ndarray, target: np.ndarray, up: np.ndarray) -> Matrix:
-    """Blender's matrix of a camera, from Tractrix's points already in Blender's axes and units."""
+    """Blender's matrix of a camera, from points in Blender's axes and units."""
     back = (eye - target) / max(np.linalg.norm(eye - target), 1e-12)
     right = np.cross(up, back)
     if np.linalg.norm(right) < 1e-9:
@@ -1233,7 +1243,7 @@ def camera_matrix(eye: np.ndarray, target: np.ndarray, up: np.ndarray) -> Matrix
 
 
 def place_camera(context, members: dict, times: np.ndarray) -> None:
-    """A camera with pose and vertical field of view of a scene file."""
+    """A camera with the pose and the vertical field of view of a scene file."""
     track = members.get("camera", {})
     if not isinstance(members.get("eye"), list) and not any("eye" in k for k in track.get("keys", [])):
         say("the scene file leaves the camera to Tractrix: no camera is made")
@@ -1327,14 +1337,14 @@ def place_mesh(context, path: str, members: dict, times: np.ndarray) -> None:
         shift = Vector(to_z_up(move[f]) / unit_of(scene) + centre)
         poses.append(Matrix.Translation(shift) @ spin @ Matrix.Translation(Vector(-centre)))
     for obj in set(bpy.data.objects) - before:
-        turned = obj.matrix_world.to_3x3().to_4x4()  # what the importer turned goes into the vertices
+        turned = obj.matrix_world.to_3x3().to_4x4()  # apply the importer's rotation to the vertices
         obj.data.transform(Matrix.Scale(unit, 4) @ turned)
         obj.matrix_world = Matrix.Identity(4)
         key_pose(obj, poses, scene.frame_start)
 
 
 def import_scene(context, path: str) -> None:
-    """Camera, lights, world, mesh, size and rate of a scene file of Tractrix. Its hair is imported by itself."""
+    """Imports camera, lights, world, mesh, size and frame rate of a scene file of Tractrix. Hair is imported separately."""
     try:
         with open(path, encoding="utf-8") as file:
             members = json.load(file)
@@ -1378,7 +1388,7 @@ def import_scene(context, path: str) -> None:
 
 
 class Parser(argparse.ArgumentParser):
-    """A wrong word is one line and status 2."""
+    """A parser whose errors are one line and status 2."""
 
     def error(self, message: str):
         raise HairError(f"command line: {message}: --help lists what is expected", USAGE)
@@ -1398,7 +1408,7 @@ SCALE_HELP = "metres of one unit of an .abc or binary USD file; without: 1 for B
 
 
 def parser() -> Parser:
-    """What stands behind `--`."""
+    """Parses the arguments after `--`."""
     top = Parser(prog="blender_hair", description="Hair from Blender to Tractrix and back.")
     commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
     out = commands.add_parser("export", help="hair of the scene, or of a file that Blender imports, to .tfx or .npz")
@@ -1442,7 +1452,7 @@ def open_input(path: str, scale: Optional[float]) -> None:
 
 
 def import_character(context, path: str, kind: str) -> None:
-    """Imports a skinned character by Blender's own importer; the timeline becomes that of its actions."""
+    """Imports a skinned character with Blender's own importer; the timeline gets the range of its actions."""
     if not os.path.exists(path):
         raise HairError(f"{path}: no such file")
     if "bool" not in vars(np):  # Debian 12's glTF importer uses a name that its numpy no longer has
