@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Decimals that read back: what is written is the shortest of %.6g .. %.9g that does.
+// Decimals that read back: a value is written in the shortest of the forms %.6g to %.9g that reads
+// back to it.
 #include "base/decimal.h"
 #include "base/random.h"
 
@@ -19,7 +20,7 @@ static void shortest(float value, char *text, size_t size)
     }
 }
 
-// Writes all values, one a line, and compares.
+// Writes all values, one per line, and compares the file.
 static void check(const float *values, size_t count)
 {
     char *text = NULL, expected[40];
@@ -52,7 +53,7 @@ static void numbers_of_any_size_are_the_shortest(void **state)
         uint32_t bits = (uint32_t)random_next(&random);
         memcpy(&values[i], &bits, sizeof bits);
         if (!isfinite(values[i])) values[i] = 0;
-        if (i % 4) // most of sizes that hair has
+        if (i % 4) // most values have sizes that occur in hair
             values[i] = (float)((random_real(&random) - 0.5) * pow(10, (double)(i % 10) - 5));
     }
     check(values, COUNT);
@@ -77,7 +78,8 @@ static void round_numbers_and_their_neighbours_are_the_shortest(void **state)
     free(values);
 }
 
-// In messages: whole numbers below ten million as such, others with as few digits as read back.
+// Messages print whole numbers below ten million as such, and other numbers with the fewest digits
+// that read back.
 static void numbers_in_messages_are_short(void **state)
 {
     (void)state;

@@ -66,8 +66,8 @@ static void smooth_curves_take_fewer_bytes(void **state)
     free(values);
 }
 
-// What is cut off lies at the end of a page, behind which there is no memory: nothing is read
-// there.
+// Puts the data at the end of a memory page that no other page follows, so that reading past the
+// end crashes.
 static void refuse_before_a_hole(const uint8_t *packed, size_t size, size_t count)
 {
     size_t page = (size_t)sysconf(_SC_PAGESIZE), pages = (size + page - 1) / page * page;
@@ -94,7 +94,8 @@ static void what_was_not_packed_is_refused(void **state)
     for (int i = 0; i < COUNT; ++i) values[i] = (float)(i % 7);
     uint8_t *packed = pack(values, COUNT, 3, &size);
     for (size_t cut = 0; cut < size; ++cut) {
-        uint8_t *part = malloc(cut + 1); // its own piece of memory for the sanitizer
+        // memory of its own, so that the sanitizer sees reads past the end
+        uint8_t *part = malloc(cut + 1);
         memcpy(part, packed, cut);
         assert_false(float_planes_unpack(read, COUNT, 3, part, cut));
         free(part);

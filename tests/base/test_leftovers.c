@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What killed and interrupted runs leave behind goes away, and nothing else.
+// Files that killed and interrupted runs left behind are removed, and no other files are.
 #include "base/bytes.h"
 #include "base/interrupt_install.h"
 #include "base/leftovers.h"
@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-// A process that has a file half-written, and then does what `end` does. Returns how it ended.
+// Starts a process that writes half a file and then calls `end`. Returns the process's exit state.
 static int half_write(const char *path, void (*end)(void))
 {
     pid_t child = fork();
@@ -41,7 +41,7 @@ static void be_killed(void)
     raise(SIGKILL);
 }
 
-// Deep in work that never looks at the flag.
+// Stands for work that never looks at the interrupt flag.
 static void be_deaf(void)
 {
     raise(SIGTERM); // SIGHUP may be ignored, as by nohup
@@ -69,7 +69,7 @@ static void a_program_that_does_not_notice_a_signal_ends_and_leaves_nothing(void
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 0);
 }
 
-// Of living processes, of other machines, locked ones, and files of any other name.
+// Files of living processes, files of other machines, locked files, and files of any other name.
 static void what_is_not_known_to_be_abandoned_stays(void **state)
 {
     char dead[LEFTOVER_NAME_SIZE], name[4][LEFTOVER_NAME_SIZE];
@@ -90,7 +90,7 @@ static void what_is_not_known_to_be_abandoned_stays(void **state)
     int locked = open(temporary_path(state, name[2]), O_RDONLY);
     assert_int_equal(flock(locked, LOCK_SH), 0);
     int root = open("/", O_PATH), folder = open(temporary_path(state, "."), O_PATH);
-    leftovers_sweep(root); // the folder of an earlier test may have had this one's inode
+    leftovers_sweep(root); // the folder of an earlier test may have had the same inode
     leftovers_sweep(folder);
     close(root);
     close(folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parser of all programs' command lines, and the forms of --help.
+// The command line parser of all programs, and the forms of --help.
 #include "base/options.h"
 
 #include <setjmp.h>
@@ -46,7 +46,7 @@ static const OptionsProgram PROGRAM = {
 
 enum { MOST_WORDS = 20 };
 
-// Parses `line`, split at blanks; operands are joined in `operands`. argv points into `copy`.
+// Parses `line`, split at blanks; joins the operands in `operands`. argv points into `copy`.
 static Result parse(Values *values, char copy[200], const char *line, char operands[100],
                     Error *error)
 {

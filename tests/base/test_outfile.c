@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files appear complete or not at all.
+// Output files appear complete or not at all.
 #include "base/bytes.h"
 #include "base/outfile.h"
 #include "support/temporary.h"
@@ -136,8 +136,8 @@ static void a_file_that_exceeds_the_limit_leaves_the_older_one(void **state)
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 1);
 }
 
-// A device that is always full. Root gets one of its own: a mistake must not cost the machine its
-// /dev/full.
+// A device that is always full. As root the test makes its own, so that a mistake can't destroy the
+// machine's /dev/full.
 static const char *find_full_device(void **state)
 {
     if (geteuid() != 0) return access("/dev/full", W_OK) == 0 ? "/dev/full" : NULL;
@@ -230,7 +230,7 @@ static void missing_folders_are_made(void **state)
     assert_content(path, "x");
 }
 
-// Takes from this process what root may do beyond others; false if that is not allowed here.
+// Drops the privileges of root that other users lack; false if that is not allowed here.
 static bool drop_powers(void)
 {
     struct __user_cap_header_struct head = {.version = _LINUX_CAPABILITY_VERSION_3};
@@ -238,7 +238,7 @@ static bool drop_powers(void)
     return syscall(SYS_capset, &head, none) == 0;
 }
 
-// In a process of its own, which has no powers of root.
+// Runs in a process of its own without root's privileges.
 static void a_read_only_file_is_not_replaced(void **state)
 {
     enum { REFUSED, REPLACED, NOT_SAID, POWERFUL };
@@ -263,7 +263,8 @@ static void a_read_only_file_is_not_replaced(void **state)
     assert_content(path, "old");
 }
 
-// Some file systems say only at closing that bytes are lost: here the descriptor is gone.
+// Some file systems report lost bytes only when the file is closed. Here the descriptor is invalid
+// at closing.
 static void what_only_closing_says_is_reported(void **state)
 {
     OutFile file;

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-// The structs, and the one that a row is about.
+// All structs of parameters, and the one that a row belongs to.
 typedef struct Params {
     RunParams run;
     BodyParams body;
@@ -91,7 +91,7 @@ static void groups_stand_together_and_texts_fit_their_place(void **state)
     }
 }
 
-// A flag of each kind, values that are taken and how they print.
+// A flag of each kind, a valid value and its printed form.
 static const struct {
     const char *name, *text, *printed;
 } VALID[] = {
@@ -173,7 +173,7 @@ static void floats_read_back_to_the_same_bits(void **state)
     }
 }
 
-// Values that are refused, and what the message must say.
+// Invalid values, and what the message must contain.
 static const struct {
     const char *name, *text, *expected;
 } INVALID[] = {

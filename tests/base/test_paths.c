@@ -60,7 +60,7 @@ static void two_outputs_are_two_files(void **state)
     const char *a = temporary_path(state, "x.usda"), *b = temporary_path(state, "y.usda");
     assert_one(a, a);
     assert_one(a, temporary_path(state, "./x.usda"));
-    assert_one(a, temporary_path(state, "X.usda")); // where case does not count, they are one
+    assert_one(a, temporary_path(state, "X.usda")); // equal on file systems that ignore case
     assert_one(temporary_path(state, "new/deep/x"), temporary_path(state, "new/deep/x"));
     assert_two(a, b);
     assert_two(temporary_path(state, "new/x"), temporary_path(state, "old/x"));
@@ -68,7 +68,7 @@ static void two_outputs_are_two_files(void **state)
 
 static void a_pattern_has_all_numbers(void **state)
 {
-    char pattern[300]; // temporary_path's results do not last
+    char pattern[300]; // the results of temporary_path are overwritten by later calls
     snprintf(pattern, sizeof pattern, "%s", temporary_path(state, "e_%d.png"));
     assert_one(pattern, temporary_path(state, "e_0.png"));
     assert_one(pattern, temporary_path(state, "e_0012.png"));

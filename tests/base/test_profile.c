@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers that differ along the strand.
+// Parameters that vary along a strand.
 #include "base/profile.h"
 
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The progress line, and what stands behind it.
+// The progress line, and the message that names the current activity.
 #include "base/activity.h"
 #include "base/progress.h"
 
@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-// A terminal whose other end shows what was drawn.
+// A pseudo-terminal: what was drawn can be read at its other end.
 typedef struct Terminal {
     int reader;
     FILE *stream;
@@ -34,8 +34,8 @@ static void close_terminal(Terminal *terminal)
     close(terminal->reader);
 }
 
-// What has been drawn since the last call. The terminal passes it on in its own time: a mark shows
-// the end.
+// Returns what was drawn since the last call. The terminal passes data on with delay, so a mark is
+// written to find the end.
 static const char *read_terminal(const Terminal *terminal)
 {
     static char text[4000];
@@ -86,7 +86,7 @@ static void the_line_says_count_rate_and_time_left(void **state)
     assert_string_equal(line, "120/120 [########################################]");
 }
 
-// Strands come in millions, cells in thousands of millions.
+// Counts of strands reach millions and counts of cells thousands of millions.
 static void the_bar_is_right_for_large_counts(void **state)
 {
     (void)state;
@@ -95,7 +95,7 @@ static void the_bar_is_right_for_large_counts(void **state)
     assert_string_equal(line, "1000000000/2000000000 [####################--------------------]");
 }
 
-// A rate without time to divide by would stay infinite for ever.
+// A rate that was divided by zero seconds would stay infinite.
 static void two_updates_at_one_time_keep_the_rate(void **state)
 {
     (void)state;
@@ -141,7 +141,8 @@ static void it_draws_ten_times_a_second_and_the_last_frame(void **state)
     Terminal terminal = open_terminal(60);
     Progress progress;
     progress_start_at(&progress, terminal.stream, 1000, false, 5.0);
-    // 1000 frames within half a second: at the first frame, four times on the way, the last one.
+    // 1000 frames within half a second: drawn at the first frame, four times in between, and at the
+    // last frame.
     for (int done = 1; done <= 1000; done++)
         progress_update_at(&progress, done, 5.0 + done * 0.0005);
     const char *text = read_terminal(&terminal);
@@ -158,7 +159,7 @@ static void the_rate_settles_on_a_new_value(void **state)
     progress_start_at(&progress, terminal.stream, 100000, false, 0.0);
     for (int i = 1; i <= 100; i++) progress_update_at(&progress, 10 * i, i);
     assert_float_equal(progress.rate, 10.0, 1e-6);
-    // Ten times the smoothing time later e^-10 of the difference is left.
+    // After ten times the smoothing time, e^-10 of the difference is left.
     for (int i = 1; i <= 30; i++) progress_update_at(&progress, 1000 + 20 * i, 100 + i);
     assert_float_equal(progress.rate, 20.0, 10.0 * 5e-5);
     close_terminal(&terminal);
@@ -183,7 +184,7 @@ static void clearing_leaves_an_empty_line_and_drawing_goes_on(void **state)
     close_terminal(&terminal);
 }
 
-// What the thread draws within `seconds`.
+// Returns what the thread draws within `seconds`.
 static const char *watch_terminal(const Terminal *terminal, double seconds)
 {
     usleep((useconds_t)(seconds * 1e6));

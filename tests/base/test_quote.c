@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whatever bytes a message is made of, it is one line that does nothing to a terminal, and it keeps
-// its beginning and its end.
+// A quoted message is one line without control characters, whatever its bytes are, and keeps its
+// beginning and its end.
 #include "base/error.h"
 #include "base/quote.h"
 #include "base/utf8.h"
@@ -27,23 +27,24 @@ static void bytes_that_do_not_stand_on_a_line_are_named(void **state)
          "\\xc2\\x9b31m C1"}, // CSI in UTF-8
         {"\x9b"
          "31m",
-         "\\x9b31m"}, // and as a byte
+         "\\x9b31m"}, // CSI as a byte
         {"Grüße, 頭髪, \xf0\x9f\x92\x87", "Grüße, 頭髪, \xf0\x9f\x92\x87"},
-        {"\xff\xfe \xc3", "\\xff\\xfe \\xc3"},                   // no UTF-8, or cut
-        {"\xc0\xaf \xed\xa0\x80", "\\xc0\\xaf \\xed\\xa0\\x80"}, // overlong, half a pair
+        {"\xff\xfe \xc3", "\\xff\\xfe \\xc3"},                   // invalid UTF-8, or cut off
+        {"\xc0\xaf \xed\xa0\x80", "\\xc0\\xaf \\xed\\xa0\\x80"}, // overlong, half a surrogate pair
         {"a\xe2\x80\xae"
          "gnp.exe",
-         "a\\xe2\\x80\\xaegnp.exe"}, // right to left
+         "a\\xe2\\x80\\xaegnp.exe"}, // right-to-left override
         {"a\xe2\x80\xa8"
          "b",
-         "a\\xe2\\x80\\xa8b"}, // a line's end, too
+         "a\\xe2\\x80\\xa8b"}, // line separator
         {"\xef\xbb\xbfmark", "\\xef\\xbb\\xbfmark"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
         Error error;
         assert_string_equal(quote(CASES[i][0]).text, CASES[i][1]);
-        assert_string_equal(quote(CASES[i][1]).text, CASES[i][1]); // twice is once
+        // quoting twice equals quoting once
+        assert_string_equal(quote(CASES[i][1]).text, CASES[i][1]);
         error_set(&error, RESULT_BAD_INPUT, "%s: it", CASES[i][0]);
         assert_int_equal(strncmp(error.text, CASES[i][1], strlen(CASES[i][1])), 0);
     }
@@ -75,7 +76,7 @@ static void a_long_text_keeps_its_ends_and_whole_characters(void **state)
         }
 }
 
-// A path may have 4096 bytes; the reason behind it is what one needs.
+// A path may have 4096 bytes, but the reason behind it is the important part.
 static void a_long_path_leaves_the_reason(void **state)
 {
     char path[4096];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names of output files.
+// Names of output files and the formats they select.
 #include "base/target.h"
 #include "support/temporary.h"
 

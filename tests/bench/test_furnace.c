@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The white furnace: hair that takes nothing of light, under a sky that is everywhere as bright as
-// the background, can't be seen. It passes only if light among hair neither vanishes nor grows: in
-// the fibre's lobes, in the grid, at its edge and at the eye.
+// The white furnace: hair that absorbs no light is invisible under a sky as bright as the
+// background. The test passes only if no light is lost or gained in the fibre's lobes, in the light
+// grid, at the grid's edge, and towards the eye.
 #include "bench/light_case.h"
 #include "bench/light_stage.h"
 #include "support/hair_fixture.h"
@@ -16,13 +16,15 @@
 
 #include <cmocka.h>
 
-// The sky's light by 48 directions, cells and lobes that are blurred by a direction's width: what
-// is stated, of the hair's mean and as RMS of blocks (of 8 x 8 pixels).
+// The error that the documentation states for the hair's mean and for the RMS of 8 x 8 pixel
+// blocks. Its causes: the sky is sampled in 48 directions, the grid has cells, and lobes are
+// blurred by the width of a direction.
 static const double STATED = 0.03;
 enum { WIDTH = 160, HEIGHT = 120 };
 
 typedef struct Furnace {
-    const char *groom, *place; // file of tests/data/light/grooms; keys of the camera
+    const char *groom, *place; // groom: file of tests/data/light/grooms; place: camera keys of the
+                               // scene
     const char *flags;
 } Furnace;
 
@@ -49,8 +51,8 @@ static void draw(LightStage *stage, const char *path, const char *const flags[3]
     if (light_stage_draw(stage, true, &error)) fail_msg("%s", error.text);
 }
 
-// How far the hair is from the background: its mean, and the RMS over blocks, each weighted by what
-// of it is covered.
+// Compares the hair with the background: the mean difference, and the RMS over blocks, each
+// weighted by its hair coverage.
 static void require_unseen(const Image *light, const Image *coverage, const char *name)
 {
     double off[3] = {0}, squares[3] = {0}, weight = 0;
@@ -116,7 +118,8 @@ static void fur_vanishes(void **state)
     require_furnace(state, FUR, "--raster blocks");
 }
 
-// An environment of one light all around is that sky, on hair and skin, whichever way it is turned.
+// An environment of one constant color lights hair and skin like the sky, whichever way it is
+// turned.
 static void an_even_environment_is_a_sky(void **state)
 {
     static const float PIXELS[2][3] = {{1, 0.5f, 0.25f}, {1, 0.5f, 0.25f}};
@@ -146,7 +149,7 @@ static void an_even_environment_is_a_sky(void **state)
             fail_msg("%zu: %g in the environment, %g in the sky", i, (double)b[i], (double)a[i]);
         sum += fabs((double)a[i] - 1) > 0.1;
     }
-    assert_true(sum > 1000); // of mesh and hair
+    assert_true(sum > 1000); // pixels of mesh and hair
     light_stage_destroy(&sky);
     light_stage_destroy(&even);
 }

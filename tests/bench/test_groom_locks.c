@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Neighbours in a row of strands, which is known: who they are, and when they no longer are.
+// Neighbours in a row of strands with a known spacing: which strands are neighbours, and when they
+// cease to be.
 #include "bench/groom_locks.h"
 
 #include <math.h>
@@ -10,7 +11,8 @@
 
 #include <cmocka.h>
 
-// Straight strands a centimetre apart, each of four vertices, so that each height has one.
+// Straight strands 1 cm apart with four vertices each, so that each height has one vertex of each
+// strand.
 enum { STRANDS = 40, VERTICES = 4, POINTS = STRANDS * VERTICES };
 static const float APART = 0.01f;
 
@@ -39,14 +41,14 @@ static double kept(const Row *row)
     return groom_locks_kept(&row->locks, (const float(*)[3])row->point);
 }
 
-// A strand's 8th neighbour is 4 cm off but at the ends of the row, so the spacing is 4 cm: strands
-// within 3 places are neighbours, those at 4 as rounding has it.
+// Except at the ends of the row, a strand's 8th neighbour is 4 cm away, so the spacing is 4 cm.
+// Strands up to 3 places apart are neighbours; those 4 places apart may be, depending on rounding.
 static void test_bonds(void **state)
 {
     Row row;
     (void)state;
     create(&row);
-    // pairs within m places, from both ends, at three heights: 3 2 (m n - (1 + .. + m))
+    // pairs within m places, counted from both ends, at three heights: 3 * 2 * (m n - (1 + .. + m))
     assert_true(row.locks.bond_count <= 3 * 2 * (4 * STRANDS - 10));
     assert_true(row.locks.bond_count >= 3 * 2 * (3 * STRANDS - 6));
     for (uint32_t i = 0; i < row.locks.bond_count; ++i) {
@@ -59,8 +61,8 @@ static void test_bonds(void **state)
     groom_locks_destroy(&row.locks);
 }
 
-// The whole row moved, turned or drawn out to nearly twice its length keeps all; drawn out to more
-// than 8 times, none; a tip that leaves breaks its own pairs alone.
+// Moving or turning the whole row, or stretching it to nearly twice its length, keeps all pairs;
+// stretching it more than 8 times keeps none; a tip that moves away breaks only its own pairs.
 static void test_kept(void **state)
 {
     Row row;

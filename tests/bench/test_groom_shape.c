@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Distances from a groom, occupied voxels and depths of strands whose figures are known.
+// Distances from a groom, occupied voxels and depths, on strands with known results.
 #include "bench/groom_shape.h"
 #include "mesh/scalp.h"
 #include "support/hair_fixture.h"
@@ -12,7 +12,8 @@
 
 #include <cmocka.h>
 
-// Straight strands along x, from the origin 1 m long, and 5 cm above it half as long.
+// Two straight strands along x: one of 1 m from the origin, and one of half that length 5 cm above
+// it.
 enum { LONG = 11, SHORT = 6, POINTS = LONG + SHORT };
 
 typedef struct Stage {
@@ -20,7 +21,7 @@ typedef struct Stage {
     Hair hair;
     Mesh mesh;
     GroomShape shape;
-    float (*points)[3]; // the groom's, to be changed; in the hair's order
+    float (*points)[3]; // the groom's positions in the hair's order, for tests to change
 } Stage;
 
 static void create(Stage *stage)
@@ -66,7 +67,8 @@ static double voxels_of(const Stage *stage)
     return count;
 }
 
-// Every particle 6 cm off: 0.06 of the long strand, 0.12 of the short one. Roots do not count.
+// All particles are moved by 6 cm: 0.06 of the long strand's length, 0.12 of the short one's. Roots
+// do not count.
 static void test_displacement(void **state)
 {
     Stage stage;
@@ -88,7 +90,7 @@ static void test_displacement(void **state)
     destroy(&stage);
 }
 
-// The mean of both tips' distances from the vertical through (1, ., 1).
+// The mean distance of both tips from the vertical line through x = 1, z = 1.
 static void test_spread(void **state)
 {
     Stage stage;
@@ -100,8 +102,8 @@ static void test_spread(void **state)
     destroy(&stage);
 }
 
-// Edges of 1 cm with the points in the middle of cells: 101 and 51 of them; 101 if both strands are
-// in the same cells, however unevenly they are sampled.
+// Cells of 1 cm with the points in their middles: 101 and 51 cells are occupied, and 101 if both
+// strands lie in the same cells, however unevenly they are sampled.
 static void test_voxels(void **state)
 {
     Stage stage;
@@ -112,15 +114,17 @@ static void test_voxels(void **state)
     assert_true(voxels_of(&stage) == 101 + 51);
     for (int v = 0; v < POINTS; ++v) stage.points[v][1] = 0.002f;
     assert_true(voxels_of(&stage) == 101);
-    for (int v = 0; v < POINTS; ++v) stage.points[v][0] += 1e12f; // beyond what is counted apart
+    // beyond the voxels that are counted separately
+    for (int v = 0; v < POINTS; ++v) stage.points[v][0] += 1e12f;
     assert_true(voxels_of(&stage) >= 1);
     stage.points[0][0] = NAN;
     assert_true(isnan(voxels_of(&stage)));
     destroy(&stage);
 }
 
-// The groom's roots lie 10 cm and 5 cm deep in the ball of 0.1 m; its flat triangles are up to
-// 1 - cos(pi/64) of that nearer. A point of the long strand that was outside is put 4 cm deep.
+// The groom's roots lie 10 cm and 5 cm deep in a ball of radius 0.1 m. The ball's mesh has flat
+// triangles, which are nearer by up to 1 - cos(pi/64) of the radius. A point of the long strand
+// that was outside is put 4 cm deep.
 static void test_depth(void **state)
 {
     Stage stage;

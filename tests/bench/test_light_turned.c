@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Light among hair is the same whichever way all turns: straight hair and camera turn together
-// about the light's axis, so that they lie another way to the directions in which light is
-// followed. What light from fibre to fibre adds to the image must stay.
+// Multiple scattering does not depend on the orientation of the scene: straight hair and the camera
+// turn together about the light's axis, which changes their orientation relative to the directions
+// that the light grid follows. The light that scattering adds to the image must stay the same.
 #include "bench/light_case.h"
 #include "bench/light_stage.h"
 #include "gen/strands_make.h"
@@ -20,7 +20,7 @@
 
 enum { TURNS = 8, WIDTH = 160, HEIGHT = 120 };
 
-// The light shines along -z, which is the axis.
+// The axis is z: the light shines along -z.
 static void turn_about_axis(double angle, const double from[3], double to[3])
 {
     double c = cos(angle), s = sin(angle);
@@ -29,7 +29,8 @@ static void turn_about_axis(double angle, const double from[3], double to[3])
     to[2] = from[2];
 }
 
-// As dense as reference hair of 6,000 strands 0.15 mm thick: fewer and thicker strands.
+// Fewer and thicker strands than reference hair of 6,000 strands 0.15 mm thick, but of the same
+// density.
 static void write_groom(const char *path, double angle)
 {
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_STRAIGHT);
@@ -38,7 +39,7 @@ static void write_groom(const char *path, double angle)
     NEEDED(strands_make(&strands, &recipe, error));
     for (uint32_t i = 0; i < strands.vertex_count; ++i) {
         float *x = strands.position[i];
-        // First leant towards the light: it shines down on hair at 32 degrees.
+        // Leans the hair towards the light first: light falls on it at 32 degrees.
         const double leant[3] = {x[0], 0.848 * (double)x[1] - 0.53 * (double)x[2],
                                  0.53 * (double)x[1] + 0.848 * (double)x[2]};
         double turned[3];
@@ -71,7 +72,7 @@ static void write_scene(const char *path, const char *groom, const char *color, 
     assert_int_equal(fclose(file), 0);
 }
 
-// Mean of the image, all channels.
+// Mean of all channels of the image.
 static double draw_mean(const char *scene, const char *scatter)
 {
     LightStage stage;
@@ -89,7 +90,7 @@ static double draw_mean(const char *scene, const char *scatter)
     return sum;
 }
 
-// `most`: standard deviation over the mean.
+// `most`: the largest allowed ratio of standard deviation to mean.
 static void require_steady(void **state, const char *color, double most)
 {
     char groom[512], scene[512];
@@ -114,8 +115,8 @@ static void require_steady(void **state, const char *color, double most)
     assert_true(sqrt(squares) < most);
 }
 
-// 0.0345 and 0.0222 are measured, 0.056 and 0.0254 with half as many classes of tangents: bounds
-// that lie between.
+// The bounds lie between the measured values 0.0345 and 0.0222, and those with half as many tangent
+// classes, 0.056 and 0.0254.
 static void blond_is_steady(void **state)
 {
     require_steady(state, "0.95469,0.90633,0.79774", 0.04);

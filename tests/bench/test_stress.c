@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The stress test in its short form, every case that once broke an invariant, and the tool itself.
+// A short stress test, every case that once broke an invariant, and tests of the stress tool
+// itself.
 #include "bench/stress.h"
 #include "bench/stress_bound.h"
 #include "bench/stress_run.h"
@@ -52,7 +53,7 @@ static void a_wrong_word_is_refused(void **state)
     }
 }
 
-// Simpler and simpler, a case becomes the plain one of the fewest vertices.
+// Simplified step by step, every case becomes the default case with the fewest vertices.
 static void every_case_can_be_made_plain(void **state)
 {
     (void)state;
@@ -64,7 +65,7 @@ static void every_case_can_be_made_plain(void **state)
     assert_string_equal(text, "n=2");
 }
 
-// Reading leaves a strand as it is that has no defects.
+// Reading does not change a strand without defects.
 static void strands_are_such_as_reading_leaves(void **state)
 {
     (void)state;
@@ -100,19 +101,19 @@ static StressVerdict verdict_of(const char *algo, const char *variant, const cha
     return verdict;
 }
 
-// A pendulum without drag comes back to where it began: its energy is all that it may have, so that
-// a little more would be found.
+// A pendulum without drag returns to its start, so that it keeps all the energy that the bound
+// allows: the test would detect slightly more energy.
 static void the_bound_is_as_tight_as_can_be(void **state)
 {
     (void)state;
     StressVerdict verdict = verdict_of("hybrid", "", "n=2 dt=0.001 style=0 drag=0", 2000);
     assert_true(verdict.worst[STRESS_ENERGY] > 0.85 && verdict.worst[STRESS_ENERGY] < 1);
-    // What nothing moves has no energy to lose.
+    // Hair that nothing moves has no energy to lose.
     verdict = verdict_of("hybrid", "", "gravity=0", 200);
     assert_true(verdict.worst[STRESS_ENERGY] < 1e-3);
 }
 
-// The bound lets a kick through, and no more than it.
+// The bound allows the energy of a kick of the head and no more.
 static void the_heads_motion_counts(void **state)
 {
     (void)state;
@@ -130,19 +131,20 @@ static void the_heads_motion_counts(void **state)
     stress_bound_step(&bound, &moved);
     stress_bound_step(&bound, &still);
     stress_bound_fill(&bound, false, &out);
-    assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // off at 30 m/s, and stopped
+    assert_true(fabs((double)out.kicks - 2 * 0.5 * 60) < 1e-3); // set off at 30 m/s, and stopped
     assert_true(out.added == 0);
     params_destroy_section(&params);
 }
 
-// A groom holds the gravity of time 0, which turns with the head; hair that hangs feels all of it.
+// A groom balances gravity at time 0 and turns with the head, so only the change of gravity acts on
+// it. Hanging hair feels all of gravity.
 static void a_groom_holds_its_gravity(void **state)
 {
     (void)state;
     static const struct {
         const char *text;
         double turned, felt, changes;
-        bool warped; // by half a turn about x
+        bool warped; // half a turn about x
     } cases[] = {
         {"plain", 0, 0, 0, false},
         {"plain", PI, 20, 20, false},
@@ -172,8 +174,8 @@ static void a_groom_holds_its_gravity(void **state)
     }
 }
 
-// A mesh warps from rest on, by waves that differ with the seed; hair that is bound to it has
-// energy from nothing else here.
+// A mesh deforms from its rest shape by waves that depend on the seed. No other source gives energy
+// to the hair that is bound to it here.
 static void hair_is_bound_to_a_mesh_that_warps(void **state)
 {
     (void)state;
@@ -198,18 +200,19 @@ static void hair_is_bound_to_a_mesh_that_warps(void **state)
     assert_true(verdict.worst[STRESS_ENERGY] > 1e-3 && verdict.worst[STRESS_ENERGY] < 1);
 }
 
-// The flutter number leaves out hair that its weight presses together, and no other.
+// The number of fluttering cases excludes hair that its own weight compresses, and no other hair.
 static void only_pressed_hair_may_flutter(void **state)
 {
     (void)state;
     assert_true(verdict_of("tressfx", "steady", "tilt=150 rest=1", 20).flutters);
-    assert_false(verdict_of("tressfx", "steady", "tilt=150", 20).flutters); // a groom
+    assert_false(verdict_of("tressfx", "steady", "tilt=150", 20).flutters); // keeps its groom
     assert_false(verdict_of("tressfx", "steady", "tilt=80 rest=1", 20).flutters);
-    assert_false(verdict_of("tressfx", "steady", "n=2 tilt=150 rest=1", 20).flutters); // firm
+    // too short to bend
+    assert_false(verdict_of("tressfx", "steady", "n=2 tilt=150 rest=1", 20).flutters);
     assert_false(verdict_of("chain", "", "tilt=150 rest=1", 20).flutters);
 }
 
-// --- What broke once.
+// --- Cases that once failed.
 
 static const struct {
     const char *algo, *variant, *text;
@@ -295,8 +298,8 @@ static void what_broke_once_holds(void **state)
     }
 }
 
-// A short segment's direction is uncertain by rounding, and a long one behind it is a lever: hair
-// that nothing moves went 0.4 m in a step.
+// Rounding makes the direction of a short segment uncertain, and a long segment behind it
+// multiplies the error: hair without external forces once moved 0.4 m in a step.
 static void uneven_hair_stays_where_it_is(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The GLSL tractrix against high-precision vectors, and the judge itself.
+// The GLSL tractrix against test vectors of high precision, and the judge of such vectors.
 #include "bench/test_vectors.h"
 #include "support/hair_fixture.h"
 #include "support/temporary.h"
@@ -52,8 +52,8 @@ static void a_wrong_answer_fails(void **state)
     char text[1024];
     TestVectorsReport report = {0};
     Error error;
-    // Dragged along itself by 0.5: the tail goes from (1,0,0) to (0.5,0,0). The second row claims
-    // 2e-6 more, 20 floors.
+    // The strand is pulled along itself by 0.5: the tail moves from (1,0,0) to (0.5,0,0). The
+    // second row expects 2e-6 more, 20 times the floor.
     snprintf(text, sizeof text, "%s%s%s", HEADER, "0,pull,0,0,0,1,0,0,-0.5,0,0,1e-7,0.5,0,0\n",
              "1,pull,0,0,0,1,0,0,-0.5,0,0,1e-7,0.500002,0,0\n");
     assert_int_equal(test_vectors_check_steps(&report, fixture_gpu(), VECTORS_OURS,
@@ -64,9 +64,9 @@ static void a_wrong_answer_fails(void **state)
     assert_int_equal(report.categories[0].worst_id, 1);
 }
 
-// What is measured beside ours is really the published rule: right for a tail that is towed (0) and
-// for one that is pushed (1), wrong where the head passes the tail that it pushes, s > 2aL (2), and
-// not a number for a tail beside the head whose distance rounds to more than the length (3).
+// The published step, which is measured beside ours, is implemented correctly: it is right for a
+// towed tail (0) and a pushed tail (1), wrong where the head passes the tail that it pushes, s >
+// 2aL (2), and NaN for a tail beside the head whose distance rounds to more than the length (3).
 static void the_published_step_errs_where_it_is_known_to(void **state)
 {
     char text[1024];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Limits, alpha, bit depths, and the pairing of images by name or number.
+// Limits, alpha, bit depths, and pairing of images by name or number.
 #include "compare/pairs.h"
 #include "image/compare.h"
 #include "image/float_image.h"
@@ -109,8 +109,8 @@ static void flip_is_a_limit_of_its_own(void **state)
     assert_false(compare_three(limits).same);
 }
 
-// By hand. Black of half the alpha is invisible over black and, over white, 128 levels from black
-// of none. The colour under alpha 0 shows nowhere.
+// Expected values computed by hand. Black with half alpha is invisible over black; over white it
+// differs by 128 levels from black with alpha 0. Colour under alpha 0 is never visible.
 static void the_worse_of_two_backgrounds_counts(void **state)
 {
     (void)state;
@@ -119,7 +119,8 @@ static void the_worse_of_two_backgrounds_counts(void **state)
     assert_true(compare_colors(4, none, half).largest == 128);
     assert_true(compare_colors(4, none, white_half).largest == 128);
     assert_true(compare_colors(4, half, none).flip > 0.1);
-    // Over the other background both are equal: SSIM 1. Here of areas, whose variances are 0.
+    // Over the other background both are equal: SSIM 1. Here SSIM of constant areas, whose
+    // variances are 0.
     double c1 = 6.5025, over_white = (2 * 255 * 127 + c1) / (255 * 255 + 127 * 127 + c1),
            over_black = c1 / (128 * 128 + c1);
     assert_true(fabs(compare_colors(4, none, half).ssim - over_white) < 1e-6);
@@ -127,8 +128,8 @@ static void the_worse_of_two_backgrounds_counts(void **state)
     assert_true(compare_colors(4, none, red).largest == 0 && compare_colors(4, none, red).same);
 }
 
-// The map has at each pixel the larger error of the two: here over black at one, over white at the
-// other.
+// At each pixel the map has the larger error over the two backgrounds: here over black at one pixel
+// and over white at the other.
 static void the_map_has_the_worse_of_two_backgrounds(void **state)
 {
     (void)state;
@@ -147,7 +148,7 @@ static void the_map_has_the_worse_of_two_backgrounds(void **state)
     image_destroy(&b);
 }
 
-// Of the pixels that count, not of all.
+// A share of the compared pixels, not of all.
 static void a_share_of_failing_pixels_is_that_of_the_compared_ones(void **state)
 {
     (void)state;
@@ -164,7 +165,7 @@ static void a_share_of_failing_pixels_is_that_of_the_compared_ones(void **state)
         CompareResult result;
         limits.max_failing = percent;
         assert_int_equal(compare_images(&result, NULL, &a, &b, &mask, &limits, NULL), RESULT_OK);
-        assert_int_equal(result.same, percent >= 5); // one of 20
+        assert_int_equal(result.same, percent >= 5); // one pixel of 20
     }
     mask_destroy(&mask);
     image_destroy(&a);
@@ -195,7 +196,8 @@ static void write_image(const char *path, const Image *image)
     bytes_destroy(&file);
 }
 
-// A file of each depth, of which 8 bits can't tell the first two levels' sixteenths apart.
+// A file of each depth. 8 bits can't distinguish the first two values, which are sixteenths of a
+// level apart.
 static void files_keep_their_depth(void **state)
 {
     static const ImageKind kinds[] = {IMAGE_16, IMAGE_FLOAT};
@@ -233,10 +235,10 @@ static void levels_do_not_depend_on_the_depth(void **state)
     FloatImage plate;
     for (int i = 0; i < 2; ++i) {
         float_image_create(&plate, &images[i], 0, NULL);
-        assert_true(fabs((double)plate.rgb[0] - 200) < 1e-4); // a float's last place there is 2e-5
+        assert_true(fabs((double)plate.rgb[0] - 200) < 1e-4); // the spacing of floats there is 2e-5
         float_image_destroy(&plate);
     }
-    // What is brighter than white stays so.
+    // Values brighter than white are kept.
     float_image_create(&plate, &images[2], 0, NULL);
     assert_true(plate.rgb[0] > 400 && plate.rgb[1] == -plate.rgb[0]);
     float_image_destroy(&plate);
@@ -252,7 +254,7 @@ static void damaged_floats_are_bad_input(void **state)
         "PF\n0 1\n-1.0\n",
         "PF\n1 1\n0\n0123456789ab",
         "PF\n99999 99999\n-1\n",
-        "Pf\n1 1\n-1.0\n\xff\xff\xff\xff", // no number
+        "Pf\n1 1\n-1.0\n\xff\xff\xff\xff", // NaN
         "P6\n1 1\n255\nabc",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {

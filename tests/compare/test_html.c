@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which images stand on a page as they are and which as smaller JPEG files.
+// Which images a page embeds unchanged, and which it embeds as smaller JPEG files.
 #include "compare/html.h"
 
 #include "support/temporary.h"
@@ -14,7 +14,7 @@
 
 enum {
     EXACT_BYTES = 3 << 20
-}; // of one of three pairs of two: one pair fits into 8 MiB, two do not
+}; // size of an image in one of three pairs: one pair fits into 8 MiB, two do not
 
 static Bytes make_bytes(size_t size, char letter)
 {
@@ -60,7 +60,8 @@ static void the_worst_pairs_stay_exact(void **state)
     assert_int_equal(html_close(&html, &list, limits, "tractrix-compare a b", NULL), RESULT_OK);
     assert_int_equal(bytes_read_file(&file, path, NULL), RESULT_OK);
     const char *text = (const char *)file.data;
-    // Numbers in order: exact and small of B, exact and small of A; the equal pair has one image.
+    // Each pair has four numbers, in this order: B exact, B small, A exact, A small. The equal pair
+    // has one image.
     assert_int_equal(count(text, "id=\"image-"), 7);
     for (int i = 0; i < 12; ++i) {
         char id[32];

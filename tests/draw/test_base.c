@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Mesh and floor in C beside what OpenGL draws of them: a head under lights of all kinds.
+// Mesh and floor drawn in C against OpenGL: a head under lights of all kinds.
 #include "lanes/base.h"
 
 #include "base/random.h"
@@ -35,12 +35,12 @@ static const Ambient AMBIENT = {.sky = {0.8f, 0.9f, 1}, .ground = {0.3f, 0.25f, 
 static const float COLOR[3] = {0.8f, 0.6f, 0.5f};
 
 static Mesh head;
-static float *open_sky; // of its vertices
+static float *open_sky; // of the head's vertices
 static float (*tint)[3];
 
 enum { STRANDS = 200, VERTICES = 5 };
 
-// Strands that stand off the head on all sides.
+// Strands around the head on all sides.
 static Strands make_hair(void)
 {
     static float x[STRANDS * VERTICES][3];
@@ -62,7 +62,7 @@ typedef struct Shade {
     LaneShadow shadow;
 } Shade;
 
-// The view from before the head and a little above.
+// The camera in front of the head and slightly above it.
 static View look(void)
 {
     View view = {
@@ -72,7 +72,7 @@ static View look(void)
     return view;
 }
 
-// What OpenGL shows, read back: see BlockBase.
+// What OpenGL draws, read back: see BlockBase.
 typedef struct Shown {
     int side;
     uint16_t (*light)[4];
@@ -140,7 +140,7 @@ static LaneBaseScene make_scene(const float turn[4])
     return scene;
 }
 
-// Of what draw_by_opengl has drawn.
+// The shadows of the scene that draw_by_opengl has drawn.
 static void cast_shadows(Shade *shade, const LaneBaseScene *base)
 {
     const Drawing *drawing = &studio.renderer.drawing;
@@ -178,7 +178,7 @@ static double half(uint16_t bits)
                       : ldexp(bits & 1023, -24);
 }
 
-// Levels of 255 between two px.
+// Largest difference of two pixels' channels, in levels of 255.
 static double levels_between(const uint16_t a[4], const uint16_t b[4])
 {
     double off = 0;
@@ -187,8 +187,8 @@ static double levels_between(const uint16_t a[4], const uint16_t b[4])
     return off;
 }
 
-// Whether surfaces end among the nine px around, as depths tell: what 0.1 mm of depth is, which is
-// 2e-4 here, within a px is less than that.
+// Whether a surface ends among the 3 x 3 pixels around, judged by depth: within a surface, depth
+// changes by less than 0.1 mm, 2e-4 here, per pixel.
 static bool is_edge(const Shown *shown, int x, int y)
 {
     float low = 1, high = 0;
@@ -201,9 +201,9 @@ static bool is_edge(const Shown *shown, int x, int y)
     return high - low > 2e-4f;
 }
 
-// C rounds vertices to the same 1/256 px from sums in another order, so that a sample right on an
-// edge may fall on its other side: a few px at edges in ten thousand. All others differ by the
-// rounding of light to halves alone, once here and twice there: one level at most.
+// C rounds vertices to the same 1/256 pixel from sums in another order, so that a sample exactly on
+// an edge may fall on the edge's other side: a few edge pixels in ten thousand. All other pixels
+// differ only by rounding light to half floats, once in OpenGL and twice in C: one level at most.
 static void compare(const Shown *shown, const BlockBase *base)
 {
     int off = 0, deep = 0, pixels = base->width * base->height;
@@ -214,7 +214,7 @@ static void compare(const Shown *shown, const BlockBase *base)
         bool edge = is_edge(shown, x, y);
         if (levels > 1 && !edge) fail_msg("%d %d: %g levels off", x, y, levels);
         off += levels > 2;
-        // 24 bits of the largest sum that a depth is made of, and the slopes where it is steep.
+        // The 24 bits of the largest sum that a depth is made of; more where surfaces are steep.
         deep +=
             !(fabs((double)base->depth[i] - (double)shown->depth[there]) < (edge ? 1e-3 : 1e-5));
     }
