@@ -144,7 +144,7 @@ static void a_groom_holds_its_gravity(void **state)
     static const struct {
         const char *text;
         double turned, felt, changes;
-        bool warped; // half a turn about x
+        bool warped; // the mesh is deformed by half a turn about x
     } cases[] = {
         {"plain", 0, 0, 0, false},
         {"plain", PI, 20, 20, false},

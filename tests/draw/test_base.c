@@ -275,7 +275,8 @@ static void c_shows_what_opengl_does(void **state)
     }
 }
 
-// Nothing is drawn again but for another camera or other vertices, which show at once.
+// Mesh and floor are drawn again only if the camera or vertices change, and then the change is
+// visible.
 static void it_stays_until_something_changes(void **state)
 {
     (void)state;
@@ -307,7 +308,7 @@ static void it_stays_until_something_changes(void **state)
     lane_base_destroy(&base);
 }
 
-// A window onto the image shows a part of it.
+// A window of the image shows its part of the whole.
 static void a_window_shows_its_part(void **state)
 {
     (void)state;

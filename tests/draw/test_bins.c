@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of ribbons by blocks of pixels against the pixels that each ribbon reaches.
+// Each block's list of ribbons against the pixels that each ribbon reaches.
 #include "lanes/bins.h"
 
 #include "base/random.h"
@@ -26,14 +26,14 @@ enum {
 
 static ScreenPoint points[2 * COUNT];
 static RibbonItem items[COUNT];
-static int boxes[COUNT][4]; // px: first column and row, last ones
+static int boxes[COUNT][4]; // px: first column and row, last column and row
 
 static uint16_t clamp(double x, int end)
 {
     return (uint16_t)fmin(fmax(x, 0), end - 1);
 }
 
-// Lines anywhere, most of them short, some of them wide.
+// Lines at random places, most of them short and some wide.
 static int setup(void **state)
 {
     (void)state;
@@ -59,8 +59,9 @@ static int setup(void **state)
     return 0;
 }
 
-// Whether the ribbon may cover some of a pixel of the block: the middle is in its box, and as near
-// to its line as its half-width and half the pixel's, `more` px besides.
+// Whether the ribbon may cover part of a pixel of the block: the pixel's middle lies in the
+// ribbon's box, and its distance from the ribbon's line is at most the half-widths of ribbon and
+// pixel plus `more` px.
 static bool touches(int i, int column, int row, double more)
 {
     const ScreenPoint *a = &points[2 * i], *b = a + 1;
@@ -78,7 +79,7 @@ static bool touches(int i, int column, int row, double more)
     return false;
 }
 
-// Lists that so many threads make, each of a range of the ribbons.
+// Builds the lists by this many threads, each for a range of the ribbons.
 static Bins make_lists(int parts)
 {
     Bins lists;
@@ -120,8 +121,8 @@ static void a_block_lists_all_that_touch_it(void **state)
     bins_destroy(&lists);
 }
 
-// In a box of several rows and columns of blocks no more than what a strip a pixel and a half wider
-// reaches.
+// If a ribbon's box has several rows and columns of blocks, it is listed in hardly any block that a
+// strip wider by 1.5 px does not reach.
 static void a_block_lists_little_else(void **state)
 {
     (void)state;

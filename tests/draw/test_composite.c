@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A block of pixels against the same sum in double precision, pixel by pixel.
+// Compositing of a block of pixels against the same sum in double precision, pixel by pixel.
 #include "lanes/composite.h"
 
 #include "base/random.h"
@@ -27,10 +27,10 @@ static CompositeScratch *scratch;
 
 typedef struct Pixel {
     double color[3], through, hidden;
-    double little; // of ribbons, at most, that are not shaded
+    double little; // upper bound of the light of ribbons that are not shaded
 } Pixel;
 
-// --- Ribbons, strands of two points whose colours are known: both ends are free.
+// --- Ribbons: strands of two points, both of them free ends, with known colours.
 
 typedef struct Ribbon {
     float a[2], b[2], half_width[2], near[2], color[2][3];
@@ -64,7 +64,7 @@ static float range(Random *random, double low, double high)
     return (float)(low + (high - low) * random_real(random));
 }
 
-// Ribbons in and around the block, in random order of depth.
+// Makes ribbons in and around the block, in random order of depth.
 static void make_ribbons(uint64_t seed, int count, double width, double opacity)
 {
     Random random = random_create(seed, 0);
@@ -108,7 +108,7 @@ static void clear_block(float share_hidden)
         }
 }
 
-// --- The same in double precision.
+// --- The reference in double precision.
 
 static double area(double t, double a, double b)
 {
@@ -121,7 +121,7 @@ static double clamp(double x)
     return fmin(fmax(x, 0), 1);
 }
 
-// Opacity included; where along the ribbon the pixel lies goes to *along.
+// Coverage times opacity; *along becomes the pixel's position along the ribbon.
 static double cover(const Ribbon *r, double x, double y, double *along)
 {
     double dx = (double)r->b[0] - (double)r->a[0], dy = (double)r->b[1] - (double)r->a[1],
@@ -173,9 +173,9 @@ static double difference(const Cell *cell, int k, const Pixel *p)
     return fmax(most, fabs((double)cell->blue[k] - p->color[2]));
 }
 
-// The largest difference of any pixel but of `spared` of them: where a pixel's coverage is as good
-// as RIBBON_LEAST_COVERAGE, or two ribbons are as good as equally near, rounding decides. With
-// `least_seen`: beyond what it may change.
+// The largest difference over all pixels except `spared` of them: rounding decides where a pixel's
+// coverage almost equals RIBBON_LEAST_COVERAGE, or where two ribbons are almost equally near. With
+// `least_seen`, the difference beyond what it may cause.
 static double compare(int count, BlockForm form, float least_seen, int spared)
 {
     static float before[BLOCK_CELLS][CELL_PIXELS];
@@ -194,8 +194,8 @@ static double compare(int count, BlockForm form, float least_seen, int spared)
     return largest;
 }
 
-// Distances across are rounded at 90 px, by 4e-6 px, of which a pixel's coverage changes by as
-// much, a hundred layers on end by ten times that at most.
+// Distances across a ribbon are rounded at 90 px, by 4e-6 px, which changes a pixel's coverage by
+// as much; a hundred layers change by at most ten times that.
 static void ribbons_are_laid_under_each_other(void **state)
 {
     (void)state;
@@ -207,7 +207,7 @@ static void ribbons_are_laid_under_each_other(void **state)
     }
 }
 
-// 1/1024 may be missing, not more.
+// At most 1/1024 of the light may be missing.
 static void what_is_left_out_hardly_shows(void **state)
 {
     (void)state;
@@ -215,11 +215,12 @@ static void what_is_left_out_hardly_shows(void **state)
     clear_block(0);
     double off = compare(MOST, BLOCK_OPEN, 0, 0);
     assert_true(off < (double)RIBBON_LEAST_THROUGH + 4e-5);
-    assert_true(off > 4e-5); // something was
+    assert_true(off > 4e-5); // ribbons were left out
 }
 
-// Ribbons of which less is seen look like the others, whose colours differ by 1.01 at most, and so
-// does what stands behind where no more than twice as much of it is seen.
+// Ribbons that are too faint to be shaded get the colours of the others, which differ by 1.01 at
+// most. The error is that difference times what is visible of them, and of the background where at
+// most twice as much of it is visible.
 static void ribbons_that_are_hardly_seen_look_like_the_others(void **state)
 {
     (void)state;
@@ -234,7 +235,7 @@ static void ribbons_that_are_hardly_seen_look_like_the_others(void **state)
             memcpy(with, cells, sizeof cells);
             clear_block(form == BLOCK_OPEN ? 0 : 0.2f);
             composite((BlockForm)form, MOST, 0);
-            assert_memory_not_equal(with, cells, sizeof cells); // some were
+            assert_memory_not_equal(with, cells, sizeof cells); // some ribbons were not shaded
         }
     }
 }
@@ -248,8 +249,8 @@ static double sum_light(void)
     return sum;
 }
 
-// The colours of what is not shaded are those of the others in the mean; 1.1 % of the light would
-// be lost. Pixels without others, the edges of single ribbons, have none.
+// Ribbons that are not shaded get the mean colour of the others; otherwise 1.1 % of the light would
+// be lost. Pixels without other ribbons, at the edges of single ribbons, lose it.
 static void light_of_what_is_hardly_seen_is_made_up_for(void **state)
 {
     (void)state;
@@ -271,12 +272,12 @@ static void what_lies_behind_the_mesh_is_hidden(void **state)
     assert_true(compare(300, BLOCK_OVER_MESH, 0, 2) < 4e-5);
 }
 
-// Near to far, as lists are: cells whose pixels all hide what comes are left out, and the bytes are
-// those of the ribbons before.
+// Lists are sorted from near to far: cells without a visible pixel left are skipped, and their
+// bytes stay those of the ribbons before.
 static void what_is_all_behind_the_mesh_changes_nothing(void **state)
 {
     (void)state;
-    enum { BEFORE = 128 }; // a batch
+    enum { BEFORE = 128 }; // one batch
     static Cell expected[BLOCK_CELLS];
     make_ribbons(9, MOST, 1, 0.5);
     for (int i = BEFORE; i < MOST; ++i) {
@@ -317,7 +318,7 @@ static void every_processor_gives_the_same_bits(void **state)
             }
 }
 
-// Points as far out as projection lets them be: nothing outside the block is touched.
+// Points as far away as projection allows: nothing outside the block is written.
 static void wild_points_harm_nobody(void **state)
 {
     (void)state;

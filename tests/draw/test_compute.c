@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The compute rasteriser draws what blocks draw, in either of its forms, in every run, however
-// short of room its lists are.
+// The compute rasteriser draws the same image as blocks, in both of its forms and in every run,
+// however little memory its lists have.
 #include "passes/passes.h"
 #include "support/needed.h"
 #include "support/stage.h"
@@ -12,7 +12,7 @@
 #include <string.h>
 
 static const RendererOptions SMALL = {
-    .width = 101, .height = 67, .background = {0.2f, 0.1f, 0.4f, 1}}; // px: no whole tiles
+    .width = 101, .height = 67, .background = {0.2f, 0.1f, 0.4f, 1}}; // px: no multiples of tiles
 
 static void use_raster(const RendererOptions *options, Raster asked)
 {
@@ -32,8 +32,9 @@ static void add_mesh(void)
     mesh_destroy(&mesh);
 }
 
-// Bent strands, a wide one through the mesh and wide ones that hide what is behind them; ends of
-// wide ones, which compute rounds, lie outside, and all of their pieces are equally far away.
+// Bent strands, a wide one through the mesh, and wide ones that hide what is behind them. Compute
+// rounds the ends of wide strands, so their ends lie outside the image. All pieces of a wide strand
+// are equally far away.
 static void add_hair(void)
 {
     add_zigzags(600, 0.7f, 0.6f);
@@ -42,12 +43,12 @@ static void add_hair(void)
         add_line((float[3]){-60, -10.0f * (float)i, 30}, (float[3]){60, 25, 30}, 5, 1);
 }
 
-// --- What blocks draw.
+// --- Comparison with blocks.
 
 typedef struct Difference {
     double rmse, largest; // levels
-    double largest_light; // of floats
-    double share;         // of values that differ by more than a level
+    double largest_light; // of float values
+    double share;         // of values that differ by more than one level
 } Difference;
 
 static Difference find_difference(const Image *a, const Image *b)
@@ -88,8 +89,8 @@ static Difference compare_with_blocks(const RendererOptions *options, bool over_
     return found;
 }
 
-// Where one of two nearest ribbons, or none, is the nearest by rounding alone, pixels differ, but
-// few.
+// Pixels differ where rounding decides which of two ribbons is the nearest, or whether any is. They
+// are few.
 static void pictures_are_those_of_blocks(void **state)
 {
     (void)state;
@@ -108,8 +109,8 @@ static void pictures_are_those_of_blocks(void **state)
         {.aov = AOV_DEPTH, .depth_range = {900, 1100}},
         {.aov = AOV_TANGENT, .kind = IMAGE_16},
         {.aov = AOV_STRAND}};
-    // Where compute's maths is not C's, the two may leave out a 1/1024 of other pixels: near black
-    // sRGB has 12.92 * 255 levels.
+    // Where compute's arithmetic differs from C's, the two may leave out a contribution of 1/1024
+    // in different pixels: near black sRGB has 12.92 * 255 levels.
     const double most = studio.gpu.software && !studio.gpu.ulps ? 1.01 : 1 + 12.92 * 255 / 1024;
     add_hair();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i) {
@@ -126,8 +127,8 @@ static void pictures_are_those_of_blocks(void **state)
     }
 }
 
-// Both leave out ribbons that less than 1/1024 is seen of, but of other pixels. None is brighter
-// than 1.1.
+// Both leave out ribbons whose visible share is below 1/1024, but in different pixels. No ribbon is
+// brighter than 1.1.
 static void a_thicket_differs_by_what_is_left_out(void **state)
 {
     (void)state;
@@ -141,9 +142,9 @@ static void a_thicket_differs_by_what_is_left_out(void **state)
     assert_true(found.largest <= 1);
 }
 
-// Either leaves out other points: blocks where ribbons are long, compute where colours differ. What
-// stands in for them is up to 0.05 px off, of either: each edge of a ribbon by 0.1 px, of which the
-// pixels of two ribbons on end may have all.
+// The two leave out different points: blocks where ribbons are long, compute where colours differ.
+// Each one's straight pieces are up to 0.05 px off the curve, so that the edges of a ribbon differ
+// by up to 0.1 px, in the worst case in all of a pixel.
 static void curves_are_straightened_alike(void **state)
 {
     (void)state;
@@ -154,12 +155,12 @@ static void curves_are_straightened_alike(void **state)
     add_tangle(600, 0.7f, (float)opacity, NULL);
     Difference found = compare_with_blocks(&options, false);
     print_message("curves: at most %g of a pixel\n", found.largest_light);
-    assert_true(found.largest_light > 1e-3); // they are
+    assert_true(found.largest_light > 1e-3); // points are left out
     assert_true(found.largest_light <= 0.1 * opacity);
 }
 
-// Zigzags of strands of 2 to 12 points, one behind the other in memory, are batches of one item or
-// several items: the images are the same, and compute's, too.
+// Zigzags of 2 to 12 points, whose strands lie one behind the other in memory, are drawn as one
+// item and as several items: the images are equal, also by compute.
 static void batches_are_drawn_as_one(void **state)
 {
     (void)state;
@@ -212,8 +213,8 @@ static int by_depth_and_slot(const void *a, const void *b)
     return x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-// Each list has the ribbons that the counts speak of, without one twice, in order. Returns the
-// longest.
+// Each list has as many ribbons as its count says, in order and each once. Returns the longest
+// list's length.
 static uint32_t check_lists(const ComputeBins *bins)
 {
     uint32_t *counts = gpu_buffer_read(&bins->counts), *ends = gpu_buffer_read(&bins->ends),
@@ -226,7 +227,7 @@ static uint32_t check_lists(const ComputeBins *bins)
         for (uint32_t i = 1; i < counts[tile]; ++i) {
             const Pair *pair = &sorted[ends[tile] - counts[tile] + i];
             assert_true(by_depth_and_slot(pair - 1, pair) < 0);
-            assert_int_not_equal(pair[-1].depth, 0); // no slot has an infinite 1/w
+            assert_int_not_equal(pair[-1].depth, 0); // 1/w is never infinite
         }
         all += counts[tile];
         if (counts[tile] > longest) longest = counts[tile];
@@ -238,7 +239,7 @@ static uint32_t check_lists(const ComputeBins *bins)
     return longest;
 }
 
-// --- The same bytes.
+// --- Equal bytes.
 
 static void lanes_of_either_form_draw_the_same_bytes(void **state)
 {
@@ -271,7 +272,7 @@ static void lists_that_are_too_short_grow(void **state)
     const RendererCounts *counts = &studio.renderer.counts;
     ComputeBins *bins = &stage_passes()->compute.bins;
     assert_int_equal(counts->redraws, 0);
-    bins->room = (int64_t)counts->fragments - 1; // the last one of all does not find room
+    bins->room = (int64_t)counts->fragments - 1; // one less than needed
     assert_draws_the_same(expected, size);
     assert_int_equal(counts->redraws, 1);
     assert_true(bins->room >= (int64_t)counts->fragments);
@@ -295,18 +296,18 @@ static void bands_draw_the_same(void **state)
     uint8_t *expected = draw_copy(&size);
     uint64_t pairs = studio.renderer.counts.fragments;
     assert_int_equal(studio.renderer.counts.bands, 1);
-    options.pool_bytes = (int64_t)pairs * 16 / 2; // two lists of 8 bytes
+    options.pool_bytes = (int64_t)pairs * 16 / 2; // two lists of 8 bytes per pair
     use(&options);
     add_mesh();
     assert_draws_the_same(expected, size);
     assert_in_range(studio.renderer.counts.bands, 2, 5);
     assert_int_equal(studio.renderer.counts.fragments, pairs);
     assert_draws_the_same(expected, size);
-    assert_int_equal(studio.renderer.counts.redraws, 0); // it begins with bands now
+    assert_int_equal(studio.renderer.counts.redraws, 0); // it starts with bands now
     free(expected);
 }
 
-// Draws, which fails with this message.
+// Draws and expects failure with this message.
 static void assert_refuses(const char *message)
 {
     View view;
@@ -319,7 +320,7 @@ static void assert_refuses(const char *message)
     if (!strstr(error.text, message)) fail_msg("%s", error.text);
 }
 
-// It says what draws such hair, and the next image is whole.
+// The message names a rasteriser for such hair, and the next image is complete.
 static void what_lists_cannot_hold_is_refused(void **state)
 {
     (void)state;
@@ -333,7 +334,7 @@ static void what_lists_cannot_hold_is_refused(void **state)
     use(&SMALL);
     uint8_t *expected = draw_copy(&size);
     int longest = stage_passes()->compute.longest;
-    stage_passes()->compute.longest = 20; // of a tile
+    stage_passes()->compute.longest = 20; // per tile
     assert_refuses("driver's loops can visit: --raster blocks draws any number");
     stage_passes()->compute.longest = longest;
     assert_draws_the_same(expected, size);
@@ -342,7 +343,8 @@ static void what_lists_cannot_hold_is_refused(void **state)
 
 // --- Tiles.
 
-// Lists of 1 to 9 runs of a CPU driver's lanes and of several of a GPU's, of which many are alike.
+// Lists as long as 1 to 9 runs of a CPU driver's lanes and several runs of a GPU's, with many equal
+// entries.
 static void lists_of_any_length_are_in_order(void **state)
 {
     (void)state;
@@ -367,8 +369,9 @@ static void lists_of_any_length_are_in_order(void **state)
     studio.gpu.limits.sizes = own;
 }
 
-// Binning, by tiles, has every ribbon of which blocks find a pixel. A ribbon's end is a direction
-// of 8 bits, up to 5 px from a pixel's middle: coverage is off by sqrt(2) 2^-9 times that.
+// Binning puts each ribbon into the list of every tile where blocks draw it. A ribbon's end is
+// stored as a direction of 8 bits, up to 5 px from a pixel's middle, so coverage differs by up to
+// sqrt(2) 2^-9 times that.
 static void no_tile_of_a_ribbon_is_left_out(void **state)
 {
     (void)state;

@@ -18,7 +18,7 @@
 
 enum { MOST = 41 * 23 };
 
-// The least of all tiles (i, j) whose larger tile is (x, y) or beside it.
+// The minimum over all tiles (i, j) whose larger tile is (x, y) or next to it.
 static float expected(const float *nearest, int columns, int rows, int level, int x, int y)
 {
     float least = INFINITY;

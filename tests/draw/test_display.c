@@ -25,7 +25,7 @@
 enum { SIDE = 64, MIDDLE = SIDE / 2 };
 
 static Studio studio;
-static Raster raster; // that draws now
+static Raster raster; // the rasteriser under test
 
 static int open_studio(void **state)
 {
@@ -48,7 +48,7 @@ static void use(RendererOptions options)
     studio_set_options(&studio, &options);
 }
 
-// A band along x through the middle, white times `light`, at the height z.
+// A band along x through the middle of the image, white times `light`, at height z.
 static void add_band(float light, float opacity, float z)
 {
     const float position[2][3] = {{-50, 0, z}, {50, 0, z}};
@@ -86,8 +86,8 @@ static void tones_have_an_inverse(void **state)
     assert_true(fabs(tone_map(TONE_REINHARD, 4) - 1) < 1e-12);
 }
 
-// By hand, from the formulas of the papers: c (1 + c/16) / (1 + c); (2.51 c^2 + 0.03 c) / (2.43 c^2
-// + 0.59 c + 0.14).
+// Expected values by hand from the published formulas: c (1 + c/16) / (1 + c); (2.51 c^2 + 0.03 c)
+// / (2.43 c^2 + 0.59 c + 0.14).
 static void tones_are_those_of_their_papers(void **state)
 {
     (void)state;
@@ -121,7 +121,7 @@ static void floats_are_premultiplied_light(void **state)
     use((RendererOptions){.kind = IMAGE_FLOAT, .background = {0, 0, 0, 0}});
     add_band(3, 0.5f, 0);
     draw();
-    assert_true(fabsf(float_at(MIDDLE, MIDDLE, 0) - 1.5f) < 1e-3f); // halves: 11 bits
+    assert_true(fabsf(float_at(MIDDLE, MIDDLE, 0) - 1.5f) < 1e-3f); // half floats: 11 bits
     assert_true(fabsf(float_at(MIDDLE, MIDDLE, 3) - 0.5f) < 1e-3f);
     assert_true(float_at(MIDDLE, 2, 0) == 0 && float_at(MIDDLE, 2, 3) == 0);
 }
@@ -134,7 +134,7 @@ static void sixteen_bits_are_finer_than_eight(void **state)
     draw();
     uint16_t sample;
     memcpy(&sample, studio.image.pixels + 6 * (MIDDLE * SIDE + MIDDLE), sizeof sample);
-    assert_true(fabs(sample - 257 * level(0.2)) < 30); // a half's step there: 33
+    assert_true(fabs(sample - 257 * level(0.2)) < 30); // the spacing of half floats there is 33
     Image read;
     Bytes png;
     const char *path = temporary_path(state, "deep.png");
@@ -142,7 +142,7 @@ static void sixteen_bits_are_finer_than_eight(void **state)
     NEEDED(png_encode(&studio.image, NULL, &png, error));
     assert_int_equal(png.data[24], 16);
     bytes_destroy(&png);
-    NEEDED(png_read(&read, path, error)); // as 8 bits: the upper ones
+    NEEDED(png_read(&read, path, error)); // read as 8 bits: the upper byte
     for (size_t i = 0; i < SIDE * SIDE * 3; ++i) {
         memcpy(&sample, studio.image.pixels + 2 * i, sizeof sample);
         assert_int_equal(read.pixels[i], sample >> 8);
@@ -162,7 +162,8 @@ static void pfm_has_rows_from_below(void **state)
     }
     NEEDED(pfm_encode(&image, &pfm, error));
     const char header[] = "PF\n2 2\n-1.0\n";
-    const float expected[12] = {8, 9, 10, 12, 13, 14, 0, 1, 2, 4, 5, 6}; // little endian, as here
+    // little-endian, as on this machine
+    const float expected[12] = {8, 9, 10, 12, 13, 14, 0, 1, 2, 4, 5, 6};
     assert_int_equal(pfm.size, sizeof header - 1 + sizeof expected);
     assert_memory_equal(pfm.data, header, sizeof header - 1);
     assert_memory_equal(pfm.data + sizeof header - 1, expected, sizeof expected);
@@ -170,7 +171,7 @@ static void pfm_has_rows_from_below(void **state)
     image_destroy(&image);
 }
 
-// Warmer strands have as much less blue as they have more red; brighter ones have more of all.
+// Warmer strands lose as much blue as they gain red; brighter strands gain in all channels.
 static void warmth_keeps_the_sum_of_red_and_blue(void **state)
 {
     (void)state;
@@ -188,7 +189,7 @@ static void warmth_keeps_the_sum_of_red_and_blue(void **state)
     strands_destroy(&strands);
 }
 
-// Two bands, the nearer half transparent, which shows in the coverage alone.
+// Draws two bands; the nearer is half transparent, which only coverage shows.
 static void draw_aov(Aov aov, ImageKind kind, float near, float far)
 {
     use((RendererOptions){.aov = aov, .kind = kind, .depth_range = {near, far}});
@@ -219,7 +220,7 @@ static void aovs_are_what_they_are_said_to_be(void **state)
     draw();
     memcpy(one, studio_pixel(&studio, MIDDLE, MIDDLE), 3);
     assert_memory_equal(both, one, 3);
-    assert_true(one[0] || one[1] || one[2]); // black is no strand
+    assert_true(one[0] || one[1] || one[2]); // black would mean no strand
 }
 
 int main(void)

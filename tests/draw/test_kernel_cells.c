@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The formulas of glsl/kernel/cell.h and grain.h, by C and by a shader: each against what it is to
-// be, so that a fault in the header fails on both.
+// The formulas of glsl/kernel/cell.h and grain.h in C and in a shader: both are compared with
+// independent expected values, since an error in the header would affect both alike.
 #include "base/random.h"
 #include "gpu/gpu_buffer.h"
 #include "support/needed.h"
@@ -21,8 +21,8 @@ enum { SETS = 512, IN = PROBE_INPUTS, OUT = PROBE_RESULTS };
 
 static float inputs[SETS][IN];
 
-// a[0], a[2]: 0 .. 8 and 0.11 .. 2, small ones, too; a[1] also 0; then a tangent, a way and a unit
-// axis.
+// a[0]: 0 .. 8, mostly small; a[1]: 0 .. 2, sometimes exactly 0; a[2]: 0.11 .. 2; then a tangent, a
+// direction and a unit axis.
 static void make_inputs(void)
 {
     Random random = random_create(11, 0);
@@ -56,22 +56,23 @@ static void expect_near(const char *what, int set, double got, double expected, 
         fail_msg("%s, set %d: %.9g, not %.9g", what, set, got, expected);
 }
 
-// Rounding of a handful of operations on numbers up to 8: 1e-5.
+// Allows for rounding in a few operations on numbers up to 8: 1e-5.
 static void expect_light(const char *by, int n, const float *a, const float *r)
 {
     double left = exp(-(double)a[0]), mean = a[0] > 0 ? -expm1(-(double)a[0]) / (double)a[0] : 1,
            falling = a[1] > 0 ? fmin((double)a[2] / a[1], 0.95) : 0,
            further = falling / (1 - falling), rest = a[2] * further;
     expect_near(by, n, r[0], left, 1e-6);
-    expect_near(by, n, r[1], mean, 1e-4); // of a difference near 1e-3 rounding is so large
+    expect_near(by, n, r[1], mean, 1e-4); // the rounding of a difference near 1e-3 is that large
     expect_near(by, n, r[2], falling, 1e-6);
     expect_near(by, n, r[3], further, 1e-5 * (1 + further * further));
     if (fabs(rest - 0.05 * (a[0] + rest)) > 1e-4)
         expect_near(by, n, r[4], rest > 0.05 * (a[0] + rest), 0);
 }
 
-// The place among the nodes is that of the tangent on the octahedron; turned as the way to the eye
-// to the axis, it keeps its part along that and the part across both.
+// Checks the tangent's position among the table's nodes, which lie on an octahedron. Then checks
+// the turned tangent: the rotation takes the direction to the eye to the axis and keeps the
+// tangent's components along the direction and along the normal of both.
 static void expect_tangent(const char *by, int n, const float *a, const float *r)
 {
     int patch = (int)r[5], node = (int)r[6];
@@ -85,7 +86,7 @@ static void expect_tangent(const char *by, int n, const float *a, const float *r
     float length = sqrtf((float)dot(a + 6, a + 6));
     for (int k = 0; k < 3; ++k) to[k] = a[6 + k] / length;
     cross(to, a + 9, normal);
-    if (dot(to, a + 9) < -0.9) return; // about which axis half a turn goes is anybody's choice
+    if (dot(to, a + 9) < -0.9) return; // half a turn, about an axis that is not defined
     expect_near(by, n, dot(r + 9, a + 9), dot(a + 3, to), 2e-5);
     expect_near(by, n, dot(r + 9, normal), dot(a + 3, normal), 2e-5);
     expect_near(by, n, dot(r + 9, r + 9), dot(a + 3, a + 3), 5e-5);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The light among hair, by what holds whatever the hair: without absorption nothing is lost, black
-// takes light away, a mesh stands in the way; and its parts against sums by brute force.
+// Multiple scattering by properties that hold for any hair: without absorption no light is lost,
+// dark hair absorbs light, a mesh casts shadows; and the parts of the computation against
+// brute-force sums.
 #include "base/random.h"
 #include "draw/drawing.h"
 #include "lanes/light_grid.h"
@@ -21,7 +22,7 @@
 
 enum { STRANDS = 40 * STRAND_TILE, N = 6, PARTICLES = STRANDS * N };
 
-// A table whose fibres scatter all light alike to all sides of them, or the share `color`.
+// A table whose fibres scatter light equally in all directions: all of it, or the share `color`.
 static FibreTable make_table(void)
 {
     const size_t count = (size_t)SCATTER_COLORS * SCATTER_INCLINATIONS * SCATTER_AZIMUTHS;
@@ -110,7 +111,7 @@ static void close_ball(Ball *ball)
     free(ball);
 }
 
-// What each particle shows.
+// The light that each particle shows to the eye.
 static void show(Ball *ball, LightGrid *grid)
 {
     const int n = (int)ball->hair.caster.material.vertex_count;
@@ -154,7 +155,7 @@ static void set_sun(Ball *ball, float x, float y, float z)
     }
 }
 
-// Of the points below the height y.
+// Mean over the points below height y.
 static double mean_below(const Ball *ball, float y)
 {
     double sum = 0;
@@ -187,7 +188,8 @@ static void hair_without_absorption_vanishes_before_an_even_sky(void **state)
     close_ball(ball);
 }
 
-// Of black hair in the sky nothing comes back, and what is not black lies between.
+// Black hair in the sky sends no light back, and hair between black and white sends something in
+// between.
 static void darker_hair_sends_less(void **state)
 {
     (void)state;
@@ -205,14 +207,14 @@ static void darker_hair_sends_less(void **state)
     }
 }
 
-// Two suns, and a sky, send what they send each by itself.
+// Two suns and a sky together give the sum of what each gives alone.
 static void lights_add_up(void **state)
 {
     (void)state;
     double parts[3] = {0}, all = 0;
     for (int i = 0; i < 4; ++i) {
         Ball *ball = open_ball(0.8f);
-        ball->scene.orders = 2; // of all alike
+        ball->scene.orders = 2; // equal for all lights
         if (i == 0 || i == 3) set_sun(ball, 0, 1, 0);
         if (i == 1) set_sun(ball, 0.6f, 0, 0.8f);
         if (i == 3) {
@@ -229,11 +231,12 @@ static void lights_add_up(void **state)
             all = mean_seen(ball);
         close_ball(ball);
     }
-    // Cells lie by the first light, and the rest of the orders is extrapolated for all together.
+    // The first light decides how the cells lie, and the rest of the orders is extrapolated for all
+    // lights together.
     assert_true(fabs(all / (parts[0] + parts[1] + parts[2]) - 1) < 0.04);
 }
 
-// The memory of a grid grows and stays: what it found before is not in what it finds next.
+// A grid keeps its memory for further hair: the old hair must not affect the light of the new hair.
 static void a_grid_serves_hair_that_grows_and_shrinks(void **state)
 {
     (void)state;
@@ -257,7 +260,7 @@ static void a_grid_serves_hair_that_grows_and_shrinks(void **state)
     close_ball(ball);
 }
 
-// A lamp far away is a sun of the light that it has there.
+// A lamp far away equals a sun with the lamp's light at that distance.
 static void a_far_lamp_is_a_sun(void **state)
 {
     (void)state;
@@ -275,8 +278,8 @@ static void a_far_lamp_is_a_sun(void **state)
     assert_true(fabs(means[1] / means[0] - 1) < 0.01);
 }
 
-// Below a plate through the ball there is next to no light of a sun above it; a plate at its bottom
-// takes none from what is above, and where it is not black gives some back.
+// Below a plate through the ball there is almost no light from a sun above. A plate under the ball
+// takes no light away and, unless it is black, reflects some.
 static void a_mesh_stands_in_the_light(void **state)
 {
     (void)state;
@@ -307,8 +310,8 @@ static void a_mesh_stands_in_the_light(void **state)
     assert_true(means[3] > 1.05 * means[2]);
 }
 
-// What maps leave of a light is what the cells have of it: as much less as the mean of that at the
-// particles. Light falls by more than in proportion, for it lacks where fibres are many.
+// Scattered light falls with the light that shadow maps leave: by the factor of their mean over the
+// particles, and by slightly more, because shadows lie where fibres are dense.
 static void light_is_what_maps_leave(void **state)
 {
     (void)state;
@@ -345,9 +348,9 @@ static void light_is_what_maps_leave(void **state)
     close_ball(ball);
 }
 
-// Of 640 strands 160 stand for all. Lengths spread by 0.29 of their mean, so that the mean of these
-// has a standard error of 0.29 sqrt(3/4) / sqrt(160) = 0.02; bounds are three of them. Light
-// follows area less than in proportion.
+// 160 of 640 strands represent all. The standard deviation of lengths is 0.29 of their mean, so the
+// mean of the chosen strands has a standard error of 0.29 sqrt(3/4) / sqrt(160) = 0.02; three of
+// these are allowed. Light changes less than in proportion to area.
 static void some_strands_stand_for_all(void **state)
 {
     (void)state;
@@ -371,9 +374,10 @@ static void some_strands_stand_for_all(void **state)
     assert_true(fabs(means[1] / means[0] - 1) < 0.06);
 }
 
-// --- Sweeps that leave cells out, beside those that visit all.
+// --- Sweeps that skip cells against sweeps that visit all cells.
 
-// A third of the strands each in corners of a box around the ball, and a tilted plate among them.
+// A third of the strands each in three corners of a box around the ball, and a tilted plate among
+// them.
 typedef struct Clumps {
     Ball *ball;
     float vertices[4][3];
@@ -424,7 +428,8 @@ static void visit_all_cells(LightGridState *state)
             }
 }
 
-// To rounding of what keeps light from becoming denormal numbers (1e-30 a cell).
+// Equal up to the rounding caused by the small number that keeps light from becoming denormal
+// (1e-30 per cell).
 static void sweeps_leave_out_what_nobody_sees(void **unused)
 {
     (void)unused;
@@ -446,7 +451,7 @@ static void sweeps_leave_out_what_nobody_sees(void **unused)
                 fail_msg("%g, not %g", (double)sums[i], (double)state->sum[i]);
             dark += state->sum[i] < 1e-6f;
         }
-        assert_true(sky || dark > floats / 8); // behind the hair, as the light goes
+        assert_true(sky || dark > floats / 8); // behind the hair in the light's direction
     }
     free(sums);
     close_clumps(&clumps);
@@ -498,8 +503,8 @@ static void a_path_is_the_way_from_each_cell(void **unused)
     close_clumps(&clumps);
 }
 
-// Straight strands side by side along x, five cells long, of so many vertices, all of which see the
-// same light. Gives what their two ends show to an eye at the z axis.
+// Straight parallel strands along x, five cells long, with this number of vertices; all of them see
+// the same light. `seen`: the light that their two ends show to an eye on the z axis.
 static void show_brush(uint32_t vertices, float radius, double seen[2][STRANDS])
 {
     Ball *ball = open_ball(0.8f);
@@ -527,8 +532,8 @@ static void show_brush(uint32_t vertices, float radius, double seen[2][STRANDS])
     close_ball(ball);
 }
 
-// A segment that goes through several cells lies in all of them: light is as among short segments,
-// but for where pieces end. Measured: 0.041, and twice that.
+// A segment that passes through several cells is counted in all of them: light equals that among
+// short segments, apart from where the pieces end. Measured: 0.041; twice that is allowed.
 static void long_segments_are_as_many_short_ones(void **state)
 {
     (void)state;
@@ -545,8 +550,8 @@ static void long_segments_are_as_many_short_ones(void **state)
     assert_true(off < 2 * 0.041);
 }
 
-// How many strands of a brush, across which lie so many fibres, show to the bit what another shows:
-// the mean of the light in their cell, which hidden hair gets.
+// A brush has this number of fibres across. Returns how many of its strands show exactly the light
+// of another strand: hidden hair gets the mean light of its cell.
 static int count_hidden(double fibres)
 {
     static double seen[2][STRANDS];
@@ -560,9 +565,10 @@ static int count_hidden(double fibres)
     return count;
 }
 
-// Hair behind seven fibres counts as hidden, but for those of its own cell and its neighbours, and
-// as far as they lie across the nearest of the grid's directions: measured, none with ten across
-// the brush, 104 with 20. Behind three it would be 131 and 227.
+// Hair behind seven fibres counts as hidden. Fibres in its own cell and the neighbouring cells do
+// not count, and the distance is measured along the nearest of the grid's directions. Measured: no
+// strand is hidden with ten fibres across the brush, and 104 with 20. If three fibres hid hair, it
+// would be 131 and 227.
 static void hair_behind_seven_fibres_is_hidden_and_no_other(void **state)
 {
     (void)state;
@@ -574,7 +580,7 @@ static void hair_behind_seven_fibres_is_hidden_and_no_other(void **state)
 
 // --- Parts.
 
-// Over all directions a fibre sends on its albedo.
+// Integrated over all directions, a fibre sends on its albedo.
 static void lobes_send_on_their_albedo(void **state)
 {
     (void)state;
@@ -629,7 +635,7 @@ static void classes_are_the_nearest(void **state)
         const float *t = TANGENT[ordinates_class(way)];
         double off = acos(fmin((double)(t[0] * way[0] + t[1] * way[1] + t[2] * way[2]), 1)) -
                      acos(fmin((double)best, 1));
-        assert_true(off < 7 * PI / 180); // two half diagonals of a square of the table
+        assert_true(off < 7 * PI / 180); // two half-diagonals of a square of the table
     }
 }
 

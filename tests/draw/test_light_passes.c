@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The light among hair by shaders, which GPUs have, against C's, point by point.
+// Multiple scattering by shaders, which GPUs use, against C, point by point.
 #include "draw/hair_paint.h"
 #include "passes/passes.h"
 #include "support/hair_fixture.h"
@@ -17,7 +17,7 @@
 
 enum { STRANDS = 100, N = 8, SUMS_OF_A_TURN = 1 << 18 };
 
-// Of the strands one in two and a half, the last of them a narrow one.
+// The share of strands that is drawn: two of five, the last of them narrower.
 static const float LEAST_SHARE = 0.403f;
 
 // Initialisers of lights.
@@ -47,8 +47,8 @@ typedef struct Case {
     StageSky sky;
     bool mesh, painted, smooth, dense, thinned, sheer;
     int cells;
-    bool turns;       // sums of cells in turns
-    uint32_t strands; // that stand for all; 0: all
+    bool turns;       // sums of cells in several turns
+    uint32_t strands; // number of strands that represent all; 0: all
 } Case;
 
 static const Case CASES[] = {
@@ -128,8 +128,8 @@ static void paint_strands(uint32_t item, const Strands *strands)
     free(colored.color);
 }
 
-// Two sections of fair hair, of other colours, whose segments are longer than a cell: C leaves no
-// particle of them out.
+// Adds two sections of fair hair with different colours. Their segments are longer than a cell, so
+// that C leaves out no particle.
 static void add_sections(const Case *of)
 {
     for (uint64_t i = 0; i < 2; ++i) {
@@ -141,7 +141,7 @@ static void add_sections(const Case *of)
         material->shadow_opacity = of->sheer ? 0.4f : 1;
         material->tip_ratio = 0.4f;
         material->smooth = of->smooth ? 3 : 1;
-        material->curve = CURVE_BSPLINE; // which passes no particle
+        material->curve = CURVE_BSPLINE; // does not pass through the particles
         for (int k = 0; k < 3; ++k) material->color[k] = 0.9f - 0.15f * (float)((uint)k + i);
         if (of->painted) paint_strands(item, &strands);
         strands_destroy(&strands);
@@ -169,8 +169,9 @@ static void draw(const Case *of, Raster by)
     stage_draw_lit(of->lights, of->light_count, of->sky);
 }
 
-// What the particles of a section show, three floats each, as its positions lie; the caller frees
-// it. By shaders all points of the curves do, of which particles are some.
+// The light that a section's particles show, three floats each in the order of positions; the
+// caller frees it. Shaders compute it for all points of the curves, some of which are the
+// particles.
 static float *copy_seen(uint32_t item, size_t *count)
 {
     const HairBatch *batch = &studio.hair[item].batches[0];
@@ -216,7 +217,8 @@ static float *find_seen(uint32_t item)
     return copy;
 }
 
-// Particles of the strands that are drawn, not of those that only fill the last tile.
+// Whether the particle belongs to a strand that is drawn, and not to one that only fills the last
+// tile.
 static bool is_drawn(const Case *of, size_t at)
 {
     size_t particle = at / 3,
@@ -224,9 +226,9 @@ static bool is_drawn(const Case *of, size_t at)
     return strand < (of->thinned ? (size_t)ceilf(STRANDS * LEAST_SHARE) : STRANDS);
 }
 
-// Sums of hair are whole numbers on either side. What comes after them is rounded, in the longest
-// chain of cells and orders a few hundred times, by 1e-7 or less each: 3e-5 in all. Where light is
-// a difference of sums, or a piece of hair is rounded to another cell, a point may be off by more.
+// Sums of hair are integers in both. What follows is rounded a few hundred times in the longest
+// chain of cells and orders, by up to 1e-7 each: 3e-5 in all. Single points may differ more, where
+// light is a difference of sums or a piece of hair is rounded to another cell.
 static void expect_same(const Case *of, const float *c, const float *shaders, size_t count)
 {
     double off = 0, all = 0, most = 0;
@@ -243,7 +245,7 @@ static void expect_same(const Case *of, const float *c, const float *shaders, si
                  sqrt(off / all), most, mean);
 }
 
-// Cells that so little is seen of that their mean light will do.
+// Number of cells that are almost hidden, so that their mean light suffices.
 static int count_hidden(void)
 {
     const LightPasses *passes = &stage_passes()->scatter.passes;

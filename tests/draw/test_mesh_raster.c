@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles of a mesh to depths, beside their definition in double precision.
+// Depths of a mesh's triangles against their definition in double precision.
 #include "lanes/mesh_raster.h"
 
 #include "base/random.h"
@@ -19,7 +19,7 @@ enum { SIDE = 64, WIDTH = 57, HEIGHT = 61, PLACES = 1 + MESH_EDGES };
 static const double PLACE[PLACES][2] = {
     {0.5, 0.5}, {0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
 
-// The mesh's frame is the screen: px, px, depth.
+// The mesh's coordinates are the screen's: px, px, depth.
 static const float SCREEN[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 
 static PlacedMesh place(const float (*position)[3], const float (*normal)[3], uint32_t vertices,
@@ -69,8 +69,9 @@ static void a_triangle_has_its_own_samples_and_their_depths(void **state)
     mesh_surface_destroy(&surface);
 }
 
-// Each sample in a square belongs to one of the triangles that fill it, those on edges, too: half
-// of the inner corners are samples, and every third row of them lies along samples.
+// Every sample in a square belongs to exactly one of the triangles that fill it, also on shared
+// edges: half of the inner corners lie exactly on samples, and every third row of corners runs
+// along samples.
 static void triangles_with_a_common_edge_leave_no_gap_and_do_not_overlap(void **state)
 {
     (void)state;
@@ -113,7 +114,7 @@ static void triangles_with_a_common_edge_leave_no_gap_and_do_not_overlap(void **
 enum { FOCAL = 40 };
 static const double NEAR = 0.5, FAR = 100;
 
-// From the world's origin along -z, y up; depths as OpenGL's.
+// A camera at the world's origin that looks along -z, y up; depths as in OpenGL.
 static void look(float rows[4][4])
 {
     const double a = FAR / (FAR - NEAR);
@@ -124,8 +125,8 @@ static void look(float rows[4][4])
     memcpy(rows, all, sizeof all);
 }
 
-// A floor whose corners lie behind the eye or 10 km off is cut before it and seen up to `FAR`.
-// Normals are a function of the place, so that they tell whether they were found in perspective.
+// A floor with corners behind the eye or 10 km away is clipped and visible up to `FAR`. Its normals
+// are a function of position, which shows whether they are interpolated in perspective.
 static void what_is_near_far_or_wide_is_cut(void **state)
 {
     (void)state;
@@ -146,8 +147,8 @@ static void what_is_near_far_or_wide_is_cut(void **state)
             if (w < 0 || w > 1.03 * FAR || side < -3.1) assert_true(found == 1);
             continue;
         }
-        // A corner is rounded to 1/256 px, of `down` px from the horizon: so much of w, and of what
-        // goes with it.
+        // A corner is rounded to 1/256 px, at `down` px below the horizon: the relative error of w
+        // and of what depends on it.
         double a = FAR / (FAR - NEAR), z = a * (1 - NEAR / w), off = 1 / down / 256 + 1e-4,
                inverse = (double)surface.inverse[at];
         ++seen;
@@ -163,7 +164,7 @@ static void what_is_near_far_or_wide_is_cut(void **state)
     mesh_surface_destroy(&surface);
 }
 
-// A tangle of triangles, also before the eye and behind it.
+// A tangle of triangles, also in front of the eye and behind it.
 static void make_tangle(float (*x)[3], uint32_t (*triangle)[3], uint32_t count)
 {
     Random random = random_create(27, 2);
@@ -194,7 +195,8 @@ static void threads_do_not_change_a_bit(void **state)
     mesh_surface_destroy(&second);
 }
 
-// A map is what the middles of a surface of the same view show, and the head carries the mesh.
+// A shadow map equals the depths that a surface of the same view has at pixel middles, and the
+// head's motion moves the mesh.
 static void a_map_has_the_same_depths_as_a_surface(void **state)
 {
     (void)state;
@@ -224,7 +226,7 @@ static void a_map_has_the_same_depths_as_a_surface(void **state)
               there = map[p / WIDTH * SIDE + p % WIDTH];
         seen += fabsf(here - there) < 1e-5f && here < 1;
     }
-    // But for samples on edges, which rounding moves.
+    // Samples on edges may differ, because of rounding.
     assert_true(seen > WIDTH * HEIGHT * 99 / 100);
     mesh_raster_destroy(&raster);
     mesh_surface_destroy(&surface);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The share of the sky that a mesh sees. Cells are a thirtieth of the scenes' two metres and
-// directions 30 degrees apart: shares are right to some 0.1.
+// The share of the sky that points of a mesh see. The scenes are two metres wide, cells are a
+// thirtieth of that and directions 30 degrees apart: shares are accurate to about 0.1.
 #include "draw/openness.h"
 #include "support/needed.h"
 #include "support/studio.h"
@@ -15,7 +15,7 @@
 
 enum { SIDE = 21, PLANE = SIDE * SIDE }; // vertices
 
-// A square of 2 m by 2 m from `corner` along two axes, appended at vertex `first`.
+// Appends a square of 2 m by 2 m at vertex `first`, from `corner` along two axes.
 static void put_plane(Mesh *mesh, uint32_t first, uint32_t first_triangle, const float corner[3],
                       int across, int along, const float normal[3])
 {
@@ -35,7 +35,7 @@ static void put_plane(Mesh *mesh, uint32_t first, uint32_t first_triangle, const
         }
 }
 
-// A floor, and with `walls` 2 one wall at its edge x = -1.
+// A floor, and if `walls` is 2 also a wall at its edge x = -1.
 static Mesh make_walls(uint32_t walls)
 {
     const uint32_t triangles = 2 * (SIDE - 1) * (SIDE - 1);
@@ -69,8 +69,8 @@ static void a_floor_sees_all_of_the_sky(void **state)
     mesh_destroy(&floor);
 }
 
-// From the foot of the wall half of the sky is hidden (a little less: it ends at 2 m); from a metre
-// away 1/2 (1 - 1 / sqrt(5)) and less, since it ends at its sides, too.
+// At the foot of the wall, half of the sky is hidden, or slightly less because the wall is 2 m
+// high. One metre away it is 1/2 (1 - 1 / sqrt(5)), or less because the wall is 2 m wide.
 static void a_wall_hides_its_side_of_the_sky(void **state)
 {
     (void)state;
@@ -83,8 +83,8 @@ static void a_wall_hides_its_side_of_the_sky(void **state)
     mesh_destroy(&walls);
 }
 
-// A dense mat of hair above the floor's half, of optical depth 2 r length / area = 2 at right
-// angles: under it a share of exp(-2) or so, more where light comes in from its side.
+// A dense mat of hair above half of the floor, with optical depth 2 r length / area = 2 at right
+// angles: under it the share is about exp(-2), or more because light comes in from the side.
 static void hair_hides_the_sky_by_its_density(void **state)
 {
     (void)state;
@@ -107,13 +107,13 @@ static void hair_hides_the_sky_by_its_density(void **state)
         assert_true(open_at(&floor, &hair, SIDE / 4) > 0.8f); // beside it
     }
     assert_true(open[1] < 0.3f && open[0] > open[1] + 0.1f && open[0] < 0.6f);
-    assert_true(fabsf(open[2] - open[1]) < 1e-3f); // half as wide and twice as many
+    assert_true(fabsf(open[2] - open[1]) < 1e-3f); // half as wide and twice as many strands
     strands_destroy(&strands);
     mesh_destroy(&floor);
 }
 
-// What a flat surface under a layer of this optical depth sees of the sky: the mean, by cosine, of
-// exp(-depth / cosine).
+// The share of the sky that a flat surface sees under a layer of this optical depth: the mean of
+// exp(-depth / cosine), weighted by cosine.
 static double under_layer(double depth)
 {
     enum { STEPS = 2000 };
@@ -125,9 +125,9 @@ static double under_layer(double depth)
     return sum;
 }
 
-// Hair so low that the surface is seen from the middle of the cells that it fills: above it lies
-// half of it. A sixteenth is seen from the cells below, above which lies all of it: measured 0.023
-// darker.
+// Hair so low that the surface lies in the middle of the hair's cells: half of the hair is above
+// it. A sixteenth of the share is looked up in the cells below, above which all of the hair lies:
+// measured 0.023 darker.
 static void hair_around_a_point_hides_by_half(void **state)
 {
     (void)state;
@@ -142,7 +142,7 @@ static void hair_around_a_point_hides_by_half(void **state)
     Strands strands = studio_strands(STRANDS, 2, (const float(*)[3])x);
     Mesh floor = make_walls(1);
     for (int i = 1; i <= 4; ++i) {
-        const double depth = 0.4 * i; // 2 r over the strands' distance, of any direction
+        const double depth = 0.4 * i; // 2 r over the strands' distance; strands in all directions
         const OpennessHair hair = {&strands, (float)(depth * 0.01 / (2 * 0.7854)), 1};
         double open = (double)open_at(&floor, &hair, 3 * SIDE / 4), exact = under_layer(depth / 2);
         if (!(fabs(open - exact) < 0.03))
@@ -152,9 +152,9 @@ static void hair_around_a_point_hides_by_half(void **state)
     mesh_destroy(&floor);
 }
 
-// A floor that ends at the side of a solid cube: the cells inside of it count for nothing, so that
-// the foot sees half of the sky at least, and as its vertices take means of their neighbours, a
-// little more.
+// A floor that ends at the side of a solid cube. Cells inside the cube do not count, so that the
+// foot sees at least half of the sky, and slightly more because vertices take means of their
+// neighbours.
 static void the_inside_of_a_mesh_is_not_dark(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Colours and thickness that differ over a section.
+// Colours and thickness that vary over a section.
 #include "base/colors.h"
 #include "draw/hair_paint.h"
 #include "image/image.h"
@@ -25,7 +25,7 @@
 
 enum { STRANDS = 4, SIZE = 5 };
 
-// Four strands, side by side, 40 long, of five vertices each.
+// Four parallel strands, 40 long, of five vertices each.
 static Strands make_strands(void)
 {
     float position[STRANDS * SIZE][3];
@@ -94,7 +94,7 @@ static void what_the_file_has_is_used_unless_refused(void **state)
     params.tip_ratio = 0.5f;
     NEEDED(paint_create(&paint, &strands, &params, error));
     assert_true(paint.colors_from_file && paint.color[7][2] == 7.0f / (STRANDS * SIZE));
-    assert_true(fabsf(paint.color[7][3] - 0.6f) < 1e-6f); // a strand's mean
+    assert_true(fabsf(paint.color[7][3] - 0.6f) < 1e-6f); // the mean of the strand
     assert_true(fabsf(paint.thickness[3 * SIZE] - 1.6f) < 1e-6f);
     assert_true(fabsf(paint.thickness[4 * SIZE - 1] - 0.8f) < 1e-6f); // the tip's ratio
     paint_destroy(&paint);
@@ -114,8 +114,8 @@ static void what_the_file_has_is_used_unless_refused(void **state)
     strands_destroy(&strands);
 }
 
-// Refused colours leave no paint that would hold the section's colour as it is at the start, unless
-// there are opacities.
+// If colours are refused, no paint is made, which would keep the section's initial colour; paint
+// remains only for opacities.
 static void refused_colors_paint_nothing(void **state)
 {
     (void)state;
@@ -136,7 +136,7 @@ static void refused_colors_paint_nothing(void **state)
     strands_destroy(&strands);
 }
 
-// Black, red / green, white, from the top left. In the middles of texels there is nothing to mix.
+// From the top left: black, red / green, white. At the middles of texels nothing is interpolated.
 static void a_picture_colors_strands_by_their_roots(void **state)
 {
     Strands strands = make_strands();
@@ -189,7 +189,8 @@ static void melanin_gives_the_colors_of_hair(void **state)
     params_destroy_section(&params);
 }
 
-// As the color that they show, transmission and melanin give the same fibres again.
+// Transmission and melanin are converted to the color that the fibres show; setting that color
+// gives the same fibres again.
 static void what_fibres_let_through_has_a_color(void **state)
 {
     (void)state;
@@ -226,8 +227,8 @@ static void what_fibres_let_through_has_a_color(void **state)
     }
 }
 
-// No colour of hair that has a name is darker or brighter than fibres can show: all come back, to a
-// level of 255.
+// Every named hair colour lies in the range that fibres can show: all are reproduced to one level
+// of 255.
 static void fibres_can_show_what_has_a_name(void **state)
 {
     (void)state;
@@ -255,7 +256,7 @@ static void fibres_can_show_what_has_a_name(void **state)
     assert_true(count > 10);
 }
 
-// Painted red, green and half transparent, twice as thick: by both rasterisers.
+// Strands painted red, green and half transparent, and twice as thick, by both rasterisers.
 static void hair_shows_its_paint(void **state)
 {
     (void)state;
@@ -289,8 +290,8 @@ static void hair_shows_its_paint(void **state)
     }
 }
 
-// Between two vertices a smooth strand's half-width goes evenly from 4 to 12 px: 6 px a quarter of
-// the way on, 8 px half-way.
+// Between two vertices, a smooth strand's half-width changes evenly from 4 to 12 px: 6 px after a
+// quarter, 8 px half-way.
 static void smooth_hair_is_as_thick_as_between_its_vertices(void **state)
 {
     (void)state;
@@ -319,7 +320,7 @@ static void smooth_hair_is_as_thick_as_between_its_vertices(void **state)
     }
 }
 
-// White paint changes nothing: not in the shadow of the strand to the right either, which is dark.
+// White paint changes nothing, not even in the shadow of the strand on the right, which is dark.
 static void painted_hair_lies_in_shadow(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Strands on the screen against their projection in double precision: points, which of them are
+// Strands on the screen against their projection in double precision: points, which points are
 // kept, and ribbons.
 #include "lanes/project.h"
 
@@ -68,7 +68,7 @@ static Batch open_batch(uint32_t strands, uint32_t points)
     return batch;
 }
 
-// Curves of all sizes: from root to tip they turn by up to a round.
+// Curves of all sizes, which turn by up to a full circle from root to tip.
 static void bend_strands(Batch *batch, uint64_t seed)
 {
     Random random = random_create(seed, 0);
@@ -115,7 +115,7 @@ static size_t count_items(const Projection *projection)
     return count;
 }
 
-// --- In double precision, of what is in sight.
+// --- Reference in double precision, for the visible part.
 
 typedef struct Spot {
     double x, y, inverse_w, half_width;
@@ -135,7 +135,7 @@ static void unit_way(const ScreenPoint *a, const ScreenPoint *b, double way[2])
     way[0] = x / length, way[1] = y / length;
 }
 
-// As wide as the outline of a cylinder off the axis. Levels have 11 bits.
+// As wide as the outline of a cylinder off the view axis. Levels have 11 bits.
 static void expect_width(const ScreenPoint *p, bool first, bool last, double half_width)
 {
     double before[2] = {0}, after[2] = {0}, way[2],
@@ -149,8 +149,8 @@ static void expect_width(const ScreenPoint *p, bool first, bool last, double hal
         fail_msg("half-width %g, expected %g", got, expected);
 }
 
-// What stands for the points between, which are left out: no more than 0.05 px off, or 1/1000 of
-// the distance, and no longer than `far`.
+// The straight piece that replaces left-out points is at most 0.05 px or 1/1000 of its distance off
+// them, and at most `far` long.
 static void expect_straight(const Batch *batch, uint32_t s, uint32_t from, uint32_t to, double far)
 {
     const Spot a = spot_of(batch, s, from), b = spot_of(batch, s, to);
@@ -186,9 +186,9 @@ static uint32_t check_strand(const Batch *batch, const ScreenPoint *points, uint
     return k;
 }
 
-// --- Claims.
+// --- Tests.
 
-// Of two batches, the last tile of each not full.
+// Two batches whose last tiles are not full.
 static void strands_go_by_the_points_that_are_kept(void **state)
 {
     (void)state;
@@ -212,9 +212,9 @@ static void strands_go_by_the_points_that_are_kept(void **state)
     for (int b = 0; b < 2; ++b) free(batches[b].position);
 }
 
-// By ascending slots, all (but short ones between the middles of pixels) that reach into the
-// picture by their half-width and half a pixel; their blocks have all pixels whose middles lie
-// along them.
+// Ribbons are listed by ascending slots. Listed are all that reach into the image, widened by their
+// half-width plus half a pixel; short ones between the middles of pixels may be missing. Their
+// blocks contain all pixels whose middles lie along the ribbon.
 static void ribbons_in_the_picture_are_listed(void **state)
 {
     (void)state;
@@ -227,7 +227,7 @@ static void ribbons_in_the_picture_are_listed(void **state)
     size_t at = 0, all = 0;
     for (uint32_t slot = 0; slot < batch.strands * batch.hair.points; ++slot) {
         const ScreenPoint *a = &to->points[slot], *b = a + 1;
-        if (slot % batch.hair.points == 0) all = 1; // ribbons follow until the strand's last point
+        if (slot % batch.hair.points == 0) all = 1; // a strand has ribbons up to its last point
         if (!all || BITS_OF_FLOAT(a->inverse_w) >> 31) {
             all = 0;
             continue;
@@ -261,8 +261,8 @@ static void ribbons_in_the_picture_are_listed(void **state)
     free(batch.position);
 }
 
-// Of points 100, 60, 10 and -20 m before the eye the third moves back on the way to the second, to
-// the near plane at 30 m, and the last ones are out of sight; either way round.
+// The points are 100, 60, 10 and -20 m in front of the eye. The third is moved back towards the
+// second, to the near plane at 30 m, and the last is invisible; also in the reverse order.
 static void strands_end_at_the_near_plane(void **state)
 {
     (void)state;
@@ -297,7 +297,7 @@ static void strands_end_at_the_near_plane(void **state)
     }
 }
 
-// As many as a number of 16 bits lets there be, all of them kept.
+// The most that 16 bits can count, all of them kept.
 static void strands_may_have_65000_points(void **state)
 {
     (void)state;
