@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Invariants of all images: order, memory, bounds, threads.
+// Invariants of all images: order of strands, memory, bounds, threads.
 #include "base/random.h"
 #include "draw/drawing.h"
 #include "passes/passes.h"
@@ -27,7 +27,7 @@ static void the_nearer_strand_is_in_front(void **state)
 {
     (void)state;
     use(&BLACK);
-    for (int order = 0; order < 4; ++order) { // which is added first, which is nearer
+    for (int order = 0; order < 4; ++order) { // bits: which strand is added first, which is nearer
         bool red_first = order & 1, red_near = order & 2;
         float red_z = red_near ? 1 : -1;
         add_band(red_first ? red_z : -red_z, red_first, !red_first);
@@ -41,7 +41,7 @@ static void the_nearer_strand_is_in_front(void **state)
     }
 }
 
-// A strand that comes out of the picture, `slope` px towards the eye for each to the right.
+// Adds a strand that leaves the image plane: `slope` px towards the eye for each px to the right.
 static void add_slanted(float slope)
 {
     enum { POINTS = 81 };
@@ -56,8 +56,8 @@ static void add_slanted(float slope)
     strands_destroy(&strands);
 }
 
-// A strand that is straight and of one colour is before what its one end passes and behind what the
-// other does, however steep it is and however few ribbons it could be drawn by.
+// A straight strand of one colour passes in front of a strand near its one end and behind one near
+// its other end, however steep it is and however few ribbons could draw it.
 static void a_slanted_strand_passes_between_others(void **state)
 {
     (void)state;
@@ -97,8 +97,8 @@ static void order_of_strands_does_not_matter(void **state)
     free(expected);
 }
 
-// Glaring strands in one pixel: 32 bits do not hold sums over 60,000 of them. Blocks take any
-// number.
+// Very bright strands in one pixel: sums of more than 60,000 of them overflow 32 bits. Blocks take
+// any number.
 static void thousands_of_layers_are_still_white(void **state)
 {
     (void)state;
@@ -115,7 +115,7 @@ static void thousands_of_layers_are_still_white(void **state)
     strands_destroy(&strands);
 }
 
-// Not even on one of much more hair.
+// The image before may have much more hair.
 static void a_picture_does_not_depend_on_the_one_before(void **state)
 {
     (void)state;
@@ -148,7 +148,8 @@ static void no_hair_is_background(void **state)
     }
 }
 
-// Where hair's box begins must not be seen: the background comes out of the resolve as it went in.
+// The bounding box of the hair must be invisible: the background passes through the resolve
+// unchanged.
 static void background_is_exact_beside_hair(void **state)
 {
     (void)state;
@@ -169,7 +170,7 @@ static void a_strand_towards_the_eye_is_harmless(void **state)
     (void)state;
     use(&TRANSPARENT);
     add_line((float[3]){0, 0, -100}, (float[3]){0, 0, 100}, 3, 1);
-    add_line((float[3]){40, 40, 0}, (float[3]){40, 40, 0}, 3, 1); // no length at all
+    add_line((float[3]){40, 40, 0}, (float[3]){40, 40, 0}, 3, 1); // zero length
     studio_draw(&studio);
     for (int y = 0; y < SIDE; ++y)
         for (int x = 0; x < SIDE; ++x)
@@ -177,7 +178,7 @@ static void a_strand_towards_the_eye_is_harmless(void **state)
                 assert_int_equal(studio_pixel(&studio, x, y)[3], 0);
 }
 
-// Solvers promise finite positions; if one breaks its word, the rest of the picture stands.
+// Solvers promise finite positions. If one fails, the other strands are still drawn.
 static void broken_positions_harm_no_other_strand(void **state)
 {
     (void)state;
@@ -205,7 +206,8 @@ static void a_strand_past_the_eye_is_drawn_up_to_it(void **state)
     (void)state;
     use(&TRANSPARENT);
     add_line((float[3]){20, 0, 0}, (float[3]){20, 0, 3000}, 3, 1);
-    add_line((float[3]){-20, 0, 3000}, (float[3]){-20, 0, 0}, 3, 1);    // the other way round
+    // the same in the other direction
+    add_line((float[3]){-20, 0, 3000}, (float[3]){-20, 0, 0}, 3, 1);
     add_line((float[3]){0, -30, 1500}, (float[3]){0, -30, 3000}, 3, 1); // behind the eye
     studio_draw(&studio);
     for (int x = 22; x < SIDE / 2; ++x) {
@@ -217,9 +219,9 @@ static void a_strand_past_the_eye_is_drawn_up_to_it(void **state)
             assert_int_equal(studio_pixel(&studio, SIDE / 2 + x, y)[3], 0);
 }
 
-// What has come nearer than 10 px to the eye is not drawn, though it is before the eye: of three
-// vertices at 100, 4 and 2 px the way from 100 to 91 px off the middle, and not on to 50 px beside
-// it.
+// Nothing nearer than 10 px to the eye is drawn, even in front of the eye. Of a strand with
+// vertices at 100, 4 and 2 px, the part from 100 to 91 px off the middle is drawn, and not the rest
+// up to 50 px.
 static void nothing_is_drawn_between_the_eye_and_the_near_plane(void **state)
 {
     (void)state;
@@ -234,7 +236,8 @@ static void nothing_is_drawn_between_the_eye_and_the_near_plane(void **state)
         for (int y = 0; y < SIDE; ++y) assert_int_equal(studio_pixel(&studio, x, y)[3], 0);
 }
 
-// Through the picture's corner, ever nearer to the eye: Mesa's clipping by w once cut pieces off.
+// A strand through the image's corner that comes nearer to the eye: Mesa's clipping by w once cut
+// pieces off.
 static void a_strand_is_whole_up_to_the_edge(void **state)
 {
     (void)state;
@@ -298,8 +301,8 @@ static int draw_tangle(const char *by)
     return 0;
 }
 
-// Rows of 1000 points that are all kept, one strand or a strand each: the ways from row to row lie
-// outside. CPU drivers' loops end before such a strand does.
+// Rows of 1000 points, all of which are kept, as one strand or as one strand per row: the
+// connections between rows lie outside the image. CPU drivers' loops end before such a strand does.
 static void a_strand_may_have_65000_points(void **state)
 {
     (void)state;
@@ -332,12 +335,12 @@ static void a_strand_may_have_65000_points(void **state)
 static void blocks_lie_alike_in_c_and_glsl(void **state)
 {
     (void)state;
-    if (raster == RASTER_BLOCKS) return; // which knows no GLSL
+    if (raster == RASTER_BLOCKS) return; // blocks use no GLSL
     Error error = {{0}};
     Passes *passes = stage_passes();
     LookPrograms *programs =
         raster == RASTER_QUADS ? &passes->quads.hair.project : &passes->ribbons.project;
-    unsigned all = LOOK_SHADED - 1; // every member is in use
+    unsigned all = LOOK_SHADED - 1; // all members are used
     assert_int_equal(look_programs_build(programs, all, &error), RESULT_OK);
     GLuint program = programs->program[all];
 #define DRAW(field)                                                                                \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Coverage of strands: areas, layers, level of detail.
+// Coverage of strands: area, layers, level of detail.
 #include "base/random.h"
 #include "support/stage.h"
 
@@ -14,9 +14,9 @@
 #include <cmocka.h>
 
 // Rounding to 8 bits errs by up to 1/510 in each of the (width + 1.5) (length + 1) pixels that a
-// strand touches, all alike where it runs along the rows. Its ends are spread over a pixel, which
-// is exact along rows and columns, and less than half a square pixel off elsewhere. At most angles
-// both average out.
+// strand touches, with equal errors if it runs along the rows. Its ends are blurred over one pixel,
+// which is exact along rows and columns and errs by less than half a square pixel in other
+// directions. At most angles both errors average out.
 static void coverage_of_a_strand_is_its_area(void **state)
 {
     (void)state;
@@ -43,8 +43,8 @@ static void coverage_of_a_strand_is_its_area(void **state)
     }
 }
 
-// A ribbon that is wider than blocks are covers all of the pixels between its edges, whole, in
-// every direction, and none beside them.
+// A ribbon that is wider than a block covers all pixels between its edges completely, in every
+// direction, and no pixels outside.
 static void wide_ribbons_are_whole(void **state)
 {
     (void)state;
@@ -70,9 +70,10 @@ static void wide_ribbons_are_whole(void **state)
         }
 }
 
-// A cylinder parallel to the picture, seen off the axis of a wide camera, is as wide as its tangent
-// planes through the eye: of the radius r at the place (x, z) before the eye they cut the screen at
-// focal (x z +- r sqrt(x^2 + z^2 - r^2)) / (z^2 - r^2). Rounding and rows as above.
+// A cylinder that is parallel to the image and off the axis of a wide-angle camera appears as wide
+// as the tangent planes through the eye: with radius r at (x, z) in front of the eye, they
+// intersect the screen at focal (x z +- r sqrt(x^2 + z^2 - r^2)) / (z^2 - r^2). Rounding and rows
+// as above.
 static void cylinders_off_the_axis_are_wider(void **state)
 {
     (void)state;
@@ -110,10 +111,11 @@ static double line_area(double deg, float distance, float radius, float length)
     return sum;
 }
 
-// What flickers in a slow turntable is coverage that depends on where the pixels lie. A strand of
-// 90 px^2 in some 450 pixels, each rounded by 1/510 at most and by half of that on average, if to
-// either side: 0.3 px^2 is more than ten standard deviations. Its ends add what their ramps of a
-// pixel's length differ from its diagonal's: 2 ends x 0.5 px wide x 0.1.
+// In a slow turntable, coverage that depends on the positions of pixels would flicker. A strand of
+// 90 px^2 touches about 450 pixels, each of which is rounded by 1/510 at most and by half of that
+// on average, in either direction: 0.3 px^2 is more than ten standard deviations. The ends are
+// blurred over one pixel's length instead of a pixel's extent in the strand's direction, which adds
+// 2 ends x 0.5 px wide x 0.1.
 static void coverage_is_steady_in_a_slow_turn(void **state)
 {
     (void)state;
@@ -127,7 +129,7 @@ static void coverage_is_steady_in_a_slow_turn(void **state)
     assert_true(fabs(low - 90) < 0.4 && fabs(high - 90) < 0.4);
 }
 
-// Draws from `distance` px off the middle, the camera turned by `deg` about the upright axis.
+// Draws from `distance` px off the middle, with the camera turned by `deg` about the vertical axis.
 static void draw_from(float distance, double deg)
 {
     View view;
@@ -138,7 +140,7 @@ static void draw_from(float distance, double deg)
     studio_draw_view(&studio, &view);
 }
 
-// `count` straight strands of `length` in the plane z = `depth`, all over 256 x 256 of it.
+// Adds `count` straight strands of `length` in the plane z = `depth`, spread over 256 x 256 px.
 static void add_flat(uint32_t count, float length, float depth, float radius)
 {
     float(*position)[3] = malloc((size_t)count * 2 * sizeof *position);
@@ -160,13 +162,13 @@ static void add_flat(uint32_t count, float length, float depth, float radius)
     free(position);
 }
 
-// The camera turns by a degree about an axis behind hair that faces it: it moves by 4 px, but what
-// it covers, and what of that twice, stays to 4e-5. An end's ramp is a pixel long whatever pixels'
-// middles it meets, which is off by less than half a pixel's length, as often too short as too
-// long: sqrt(1/12) of the width by standard deviation. Rounding to 1/255 adds sqrt(1/12) of that in
-// each of the (width + 1.5) length pixels. 4 standard deviations are allowed from lowest to
-// highest. Strands that cover the pixels whose middle they meet would vary by sqrt(COUNT length
-// width) px.
+// The camera turns by one degree about an axis behind hair that faces it. The hair moves by 4 px,
+// but its area, and the area covered twice, change by 4e-5 only. A strand's end is blurred over one
+// pixel's length wherever the pixels' middles lie, which errs by less than half a pixel's length,
+// equally often in both directions: the standard deviation is sqrt(1/12) of the width. Rounding to
+// 1/255 adds sqrt(1/12) of 1/255 in each of the (width + 1.5) length pixels. 4 standard deviations
+// are allowed between the lowest and the highest sum. Strands that simply covered the pixels whose
+// middles they meet would vary by sqrt(COUNT length width) px.
 static void thin_hair_is_steady_in_a_slow_turn(void **state)
 {
     (void)state;
@@ -190,9 +192,9 @@ static void thin_hair_is_steady_in_a_slow_turn(void **state)
     }
 }
 
-// The same strand from farther and farther off, down to 0.12 px: its area falls by the square of
-// the distance. Every pixel is rounded to 1/255; to 0.12 of it that is 2 % at most, which evens
-// out over the many pixels.
+// The same strand from increasing distances, down to a width of 0.12 px: its area falls with the
+// square of the distance. Every pixel is rounded to 1/255, which is up to 2 % of 0.12 and averages
+// out over many pixels.
 static void coverage_does_not_change_below_a_pixel(void **state)
 {
     (void)state;
@@ -209,7 +211,7 @@ static void joints_are_covered_once(void **state)
     (void)state;
     enum { VERTICES = 17 };
     float position[VERTICES][3] = {{-90, 0, 0}}, angle = 0;
-    for (int j = 1; j < VERTICES; ++j) { // bends of up to 60 degrees, to and fro
+    for (int j = 1; j < VERTICES; ++j) { // bends of up to 60 degrees in alternating directions
         angle += glm_rad(15) * (float)(j % 5) * (j % 2 ? 1 : -1);
         position[j][0] = position[j - 1][0] + 12 * cosf(angle);
         position[j][1] = position[j - 1][1] + 12 * sinf(angle);
@@ -222,7 +224,7 @@ static void joints_are_covered_once(void **state)
     for (int y = 0; y < SIDE; ++y)
         for (int x = 0; x < SIDE; ++x) assert_true(studio_pixel(&studio, x, y)[3] <= 128);
     for (int j = 1; j < VERTICES; ++j)
-        for (int i = 0; i <= 24; ++i) { // along the middle, at steps of half a pixel
+        for (int i = 0; i <= 24; ++i) { // along the ribbon's middle in steps of half a pixel
             float t = (float)i / 24;
             if ((j == 1 && i < 4) || (j == VERTICES - 1 && i > 20)) continue; // ends
             float x = position[j - 1][0] * (1 - t) + position[j][0] * t + SIDE / 2;
@@ -231,8 +233,8 @@ static void joints_are_covered_once(void **state)
         }
 }
 
-// Two wide ribbons that meet at a bend of 120 degrees have a mitre that is twice as long as they
-// are wide to one side: both are whole up to near its tip.
+// Two wide ribbons meet at a bend of 120 degrees. Their mitre sticks out by twice their half-width,
+// and both ribbons are complete almost up to its tip.
 static void the_mitre_of_a_sharp_bend_is_whole(void **state)
 {
     (void)state;
@@ -245,7 +247,8 @@ static void the_mitre_of_a_sharp_bend_is_whole(void **state)
     studio_draw(&studio);
     for (float out = 0; out < 1.8f * radius; out += 0.5f)
         for (int side = -1; side <= 1; side += 2) {
-            // Along the bend's outer bisector, and off it by what still lies in the mitre.
+            // A point on the bend's outer bisector, and points beside it that still lie in the
+            // mitre.
             float off = 0.4f * (float)side * (2 * radius - out) * 0.5f;
             float x = half * out + 0.5f * off, y = -0.5f * out + half * off;
             assert_int_equal(studio_pixel(&studio, (int)(SIDE / 2 + x), (int)(SIDE / 2 - y))[3],
@@ -273,7 +276,7 @@ static void layers_of_equal_opacity_multiply(void **state)
     }
 }
 
-// 30 layers: 8 in order, the rest in sums whose steps are far below one of 255.
+// 30 layers: 8 in order, the rest in sums whose precision is far below one level of 255.
 static void many_layers_still_multiply(void **state)
 {
     (void)state;
@@ -291,7 +294,7 @@ static void many_layers_still_multiply(void **state)
                 1.0);
 }
 
-// Seen from far off hundreds of particles share a pixel.
+// From far away, hundreds of particles share a pixel.
 static void hair_smaller_than_a_pixel_leaves_no_holes(void **state)
 {
     (void)state;
@@ -310,7 +313,7 @@ static void hair_smaller_than_a_pixel_leaves_no_holes(void **state)
     }
     Strands strands = studio_strands(2000, 32, (const float(*)[3])position);
     uint32_t item = studio_add(&studio, &strands, 0.2f, 1);
-    studio.material[item].opacity = 0; // so that only what is wrong is seen
+    studio.material[item].opacity = 0; // only errors would be visible
     studio_draw(&studio);
     assert_int_equal(studio.renderer.counts.fragments, 0);
     for (int i = 0; i < 2 * 2 * 3; ++i) assert_int_equal(studio.image.pixels[i], 255);
@@ -318,7 +321,7 @@ static void hair_smaller_than_a_pixel_leaves_no_holes(void **state)
     free(position);
 }
 
-// Options by which the studio's hair, 1000 from the eye, is drawn by this share of its strands.
+// Sets options by which this share of the studio's strands is drawn, 1000 from the eye.
 static void use_share(const RendererOptions *options, float share)
 {
     RendererOptions mine = *options;
@@ -326,8 +329,8 @@ static void use_share(const RendererOptions *options, float share)
     use(&mine);
 }
 
-// Strands much thinner than a pixel seldom overlap: what they cover adds up. The sum over n random
-// strands of different lengths in the picture varies by about 1/sqrt(n) of itself.
+// Strands much thinner than a pixel rarely overlap, so their coverage adds up. The sum over n
+// random strands of different visible lengths varies by about 1/sqrt(n) of itself.
 static void fewer_strands_cover_as_much(void **state)
 {
     (void)state;
@@ -342,13 +345,13 @@ static void fewer_strands_cover_as_much(void **state)
         if (fabs(sum / all - 1) > 0.02) fail_msg("share %g: %g, of all %g", share, sum, all);
         double left_out = COUNT * (1 - (double)share);
         assert_true(fabs((double)studio.renderer.counts.thinned - left_out) <=
-                    0.01 * COUNT); // by where their middle is
+                    0.01 * COUNT); // depends on where the hair's middle is
     }
 }
 
-// From share to share a strand's width changes by a tenth of it, and so does no pixel by more than
-// a tenth of an opaque one, and some for the others' widths. Strands that came or went at once
-// would change pixels by six tenths.
+// From one share to the next, a strand's width changes by a tenth. No pixel changes by more than a
+// tenth of full opacity plus the change of the other strands' widths. Strands that appeared or
+// vanished at once would change pixels by six tenths.
 static void strands_neither_come_nor_go_at_once(void **state)
 {
     (void)state;
@@ -367,8 +370,8 @@ static void strands_neither_come_nor_go_at_once(void **state)
     free(before);
 }
 
-// Of the picture from `distance`, how much opacity differs in all between two levels of detail; the
-// sum of opacity without any.
+// The sum of opacity differences between two levels of detail, in the image from `distance`; `all`:
+// the sum of opacity without level of detail.
 static double find_change(float distance, LodOptions before, LodOptions now, double *all)
 {
     size_t size;
@@ -386,12 +389,12 @@ static double find_change(float distance, LodOptions before, LodOptions now, dou
     return sum;
 }
 
-// A zoom out from `near` to `far` in so many pictures, and how level of detail goes by it: the
-// share of strands falls evenly with the distance, or as the width of a fibre does, from 1 on.
+// A zoom out from `near` to `far` in this number of images. The share of strands falls from 1
+// evenly with the distance, or with the width of a fibre on the screen.
 enum { ZOOM_STRANDS = 4000, ZOOM_FRAMES = 40 };
 static const float ZOOM_NEAR = 1000, ZOOM_FAR = 3000, ZOOM_LEAST = 0.2f, FIBRE_PX = 0.1f;
 
-// The level of detail at `distance` that has the share which `of` has.
+// The level of detail that has at `distance` the share which a zoom has at distance `of`.
 static LodOptions zoom_level(bool by_width, float distance, float of)
 {
     float shift = distance - of;
@@ -406,12 +409,13 @@ static double zoom_share(bool by_width, float distance)
     return by_width ? ZOOM_NEAR / distance : even;
 }
 
-// What the zoom itself changes is taken out: each picture is compared with that from the same place
-// whose level of detail is of the place before. From share s to s - d the strands that go take the
-// part d/s of what all cover with them, and the others, wider, cover as much more; where strands
-// overlap less is seen. Rounding to 1/255 makes as many changes greater as smaller. Of n strands
-// that go at a time the lengths of what is seen vary by half, their mean by 0.5/sqrt(n): 4 of these
-// are added to one of the two parts. With a share in quarters some picture changes by 8 parts.
+// To exclude the change by the zoom itself, each image is compared with an image from the same
+// place with the previous place's level of detail. From share s to s - d, the strands that vanish
+// take away the part d/s of the total coverage, and the remaining, wider strands add as much; less
+// is visible where strands overlap. Rounding to 1/255 increases and decreases values equally often.
+// If n strands vanish at a time, their visible lengths vary by half, and the mean by 0.5/sqrt(n): 4
+// of these are allowed in addition to one of the two parts. If the share changed in quarters, some
+// image would change by 8 parts.
 static void nothing_pops_along_a_zoom(void **state)
 {
     (void)state;
@@ -429,11 +433,11 @@ static void nothing_pops_along_a_zoom(void **state)
             if (!(parts < 2 + 4 * 0.5 / sqrt(goes * ZOOM_STRANDS)))
                 fail_msg("%s, picture %d: %g parts change", by_width ? "width" : "distance", i,
                          parts);
-            assert_true(parts > 1); // they do go, a few at a time
+            assert_true(parts > 1); // strands do vanish, a few at a time
         }
 }
 
-// Narrower fibres are so many fewer that they are as wide as was asked for.
+// The narrower the fibres, the fewer are drawn, so that they are as wide as requested.
 static void fibres_are_as_wide_as_asked_for(void **state)
 {
     (void)state;
@@ -443,7 +447,7 @@ static void fibres_are_as_wide_as_asked_for(void **state)
     add_tangle(1000, 0.1f, 0.2f, NULL); // 0.2 px wide
     studio_draw(&studio);
     assert_in_range(studio.renderer.counts.thinned, 590,
-                    610); // their middle is not quite 1000 away
+                    610); // their middle is not exactly 1000 away
 }
 
 int main(void)

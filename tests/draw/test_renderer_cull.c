@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Invisible strands are culled before projection, or their ribbons before binning, without a change
-// of the image; the counts say how many and why.
+// Culling of invisible strands before projection, or of their ribbons before binning, does not
+// change the image; the counts say how many were culled and why.
 #include "base/random.h"
 #include "draw/hair_paint.h"
 #include "passes/passes.h"
@@ -19,14 +19,14 @@ static Cull *cull(void)
     return raster == RASTER_QUADS ? &passes->quads.cull : &passes->ribbons.cull;
 }
 
-// Whether the next picture's strands are looked through.
+// Whether strands of the next image are tested for visibility.
 static bool *skips(void)
 {
     Passes *passes = stage_passes();
     return raster == RASTER_QUADS ? &passes->quads.skips : &passes->ribbons.skips;
 }
 
-// A ball of 32 x 16 faces around the middle, with what may stand on it.
+// A ball of 32 x 16 faces at the middle.
 static Mesh make_head(float radius)
 {
     enum { AROUND = 32, DOWN = 16 };
@@ -48,7 +48,7 @@ static Mesh make_head(float radius)
     return mesh;
 }
 
-// Bent strands of 5 to 65 px that begin on the head and point anywhere.
+// Bent strands 5 to 65 px long that start on the head and point in any direction.
 static Strands make_hair(void)
 {
     static float position[COUNT][VERTICES][3];
@@ -69,7 +69,7 @@ static Strands make_hair(void)
     return studio_strands(COUNT, VERTICES, (const float(*)[3])position);
 }
 
-// Thickness that swells from a tenth of a pixel to four across, or the other way, and colours.
+// Paints colours, and thickness that grows from a tenth of a pixel to four pixels or the other way.
 static void paint_hair(uint32_t item, const Strands *strands)
 {
     float(*color)[4] = malloc(strands->vertex_count * sizeof *color),
@@ -90,7 +90,7 @@ static void paint_hair(uint32_t item, const Strands *strands)
     free(thickness);
 }
 
-// From `distance` px off the middle, `turn` around the vertical, somewhat from above.
+// A camera `distance` px from the middle, turned by `turn` about the vertical axis, slightly above.
 static View look_from(double turn, float distance, float fov_deg)
 {
     View view;
@@ -117,7 +117,7 @@ typedef struct Left {
     uint64_t hidden, outside;
 } Left;
 
-// Draws with strands left out and without; the pictures must be equal to the byte.
+// Draws with and without culling; the images must be equal to the byte.
 static Left leaves_no_trace(const View *view)
 {
     size_t size;
@@ -135,12 +135,12 @@ static Left leaves_no_trace(const View *view)
     return left;
 }
 
-// Thin hair on black shows the least trace.
+// Thin hair on black shows even the smallest difference.
 static const RendererOptions DARK = {
     .width = SIDE, .height = SIDE, .background = {0, 0, 0, 1}, .kind = IMAGE_16};
 static const float THIN = 0.05f; // opacity
 
-// From all sides, from near, where strands cross the eye's plane, and into a corner.
+// Views from all sides, from nearby, where strands cross the plane of the eye, and into a corner.
 static Left leaves_no_trace_from_anywhere(const char *what)
 {
     const View views[] = {look_from(0, 600, 26),   look_from(1.3, 600, 26), look_from(2.6, 600, 26),
@@ -168,8 +168,7 @@ static void use_with_head(const RendererOptions *options)
     mesh_destroy(&head);
 }
 
-// Some 100 of each view's 1,500 strands lie wholly within the head's outline, as far as the tiles
-// can tell.
+// In each view about 100 of 1,500 strands lie completely behind the head, as far as tiles can tell.
 static void strands_behind_the_head_are_left_out_without_a_trace(void **state)
 {
     (void)state;
@@ -207,7 +206,7 @@ static void painted_and_smooth_hair_is_left_out_as_well(void **state)
     strands_destroy(&strands);
 }
 
-// Long segments, steep ones and sharp bends about a board with a slit, aslant.
+// Long segments, steep ones and sharp bends around a slanted board with a slit.
 static Strands make_thicket(void)
 {
     enum { STALKS = 4000, POINTS = 4 };
@@ -265,7 +264,7 @@ static void a_thicket_about_boards_is_left_out_without_a_trace(void **state)
     strands_destroy(&strands);
 }
 
-// All particles lie left of the picture; the curve swings 3 px in.
+// All particles lie to the left of the image, but the curve reaches 3 px into it.
 static void a_curve_may_swing_into_the_picture(void **state)
 {
     (void)state;
@@ -281,7 +280,7 @@ static void a_curve_may_swing_into_the_picture(void **state)
     strands_destroy(&strands);
 }
 
-// It stands in the way of what lies below it, and of nothing above.
+// The floor hides what is below it and nothing above.
 static void strands_below_a_floor_are_left_out_without_a_trace(void **state)
 {
     (void)state;
@@ -296,7 +295,7 @@ static void strands_below_a_floor_are_left_out_without_a_trace(void **state)
     strands_destroy(&strands);
 }
 
-// What moves in front of hair, or away, is looked at anew; what stays is not.
+// If something moves, hidden hair is determined again; if nothing moves, it is not.
 static void what_is_hidden_follows_the_camera(void **state)
 {
     (void)state;
@@ -315,13 +314,13 @@ static void what_is_hidden_follows_the_camera(void **state)
         assert_int_equal(studio.renderer.counts.hidden, 0);
         // Blocks keep points so that ribbons are short.
         assert_in_range(studio.renderer.counts.segments, 1, raster == RASTER_BLOCKS ? 4 : 1);
-        studio_draw_view(&studio, &back); // nothing was left out, nothing moved
+        studio_draw_view(&studio, &back); // nothing was culled and nothing moved
         if (raster != RASTER_BLOCKS) assert_false(cull()->tries);
     }
     strands_destroy(&strands);
 }
 
-// Lines all about the picture's sides, some of them wide, before they are projected or after.
+// Lines around the image's edges, some of them wide, culled before or after projection.
 static void strands_out_of_sight_are_left_out_early_without_a_trace(void **state)
 {
     (void)state;
@@ -350,7 +349,7 @@ static void strands_out_of_sight_are_left_out_early_without_a_trace(void **state
         assert_draws_the_same(culled, size);
         assert_int_equal(cull()->outside, 0);
         assert_int_equal(studio.renderer.counts.culled, count);
-        assert_true(*skips()); // the next picture
+        assert_true(*skips()); // for the next image
     }
     free(culled);
     strands_destroy(&strands);

@@ -13,9 +13,9 @@
 
 #include <cmocka.h>
 
-// The definitions, by other ways than the shader's: Barry's and Goldman's pyramid of the
-// centripetal Catmull-Rom spline, and de Boor's of the uniform cubic B-spline, whose knots are 1
-// apart.
+// The definitions of the curves by other algorithms than the shader's: the pyramid of Barry and
+// Goldman for the centripetal Catmull-Rom spline, and de Boor's algorithm for the uniform cubic
+// B-spline, whose knots are 1 apart.
 static double interpolate(double a, double b, double from, double to, double t)
 {
     return ((to - t) * a + (t - from) * b) / (to - from);
@@ -37,7 +37,7 @@ static void curve_at(CurveKind kind, const double p[4][3], double share, float p
             for (int i = 0; i < 2; ++i) x[i] = interpolate(x[i], x[i + 1], knot[i], knot[i + 2], t);
             point[k] = (float)interpolate(x[0], x[1], knot[1], knot[2], t);
         } else {
-            double t = 2 + share; // of the knots 0 .. 5 that the four points have
+            double t = 2 + share; // the four points have the knots 0 .. 5
             for (int level = 1; level < 4; ++level)
                 for (int i = 0; i < 4 - level; ++i)
                     x[i] = interpolate(x[i], x[i + 1], i + level - 1, i + 3, t);
@@ -72,9 +72,9 @@ static Strands make_curve(CurveKind kind, const Strands *from, uint32_t parts)
     return strands;
 }
 
-// A curve found in floats lies within 1e-4 px of that found in doubles, so that the pictures are
-// alike but for rounding and for the particles that are left out where it is nearly straight, which
-// differ where that hangs by a hair: those lie within 0.05 px.
+// A curve computed in floats is within 1e-4 px of the one in doubles. The images differ only by
+// rounding and by the particles that are left out on almost straight parts, where rounding may
+// decide: those lie within 0.05 px of the curve.
 static void smooth_strands_are_curves(void **state)
 {
     (void)state;

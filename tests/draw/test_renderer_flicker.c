@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Slow changes make slow changes in the picture: nothing flickers. What flickers is what a value of
-// a picture is off the mean of the one before and the one after.
+// Slow changes of the scene change the image slowly: nothing flickers. Flicker is the difference
+// between a pixel's value and the mean of its values in the image before and the image after.
 #include "base/random.h"
 #include "support/stage.h"
 
@@ -10,7 +10,7 @@
 
 enum { FRAMES = 12, COUNT = 300, VERTICES = 12, PICTURE = 96 };
 
-// Hair with shadows, moved by (dx, dy) px; the light stands `deg` off the vertical.
+// Draws hair with shadows, moved by (dx, dy) px, with a light `deg` off the vertical.
 static void draw_frame(float dx, float dy, float deg)
 {
     static float position[COUNT][VERTICES][3];
@@ -48,8 +48,8 @@ static double value_at(const uint8_t *pixels, size_t i)
     return value / 257.0;
 }
 
-// RMS, in levels of 255 over what is not always black, along a motion by (dx, dy) px and a turn of
-// the light by `deg` a frame.
+// RMS flicker in levels of 255, over pixels that are not black in all images, while hair moves by
+// (dx, dy) px and the light turns by `deg` per frame.
 static double flicker(const RendererOptions *options, float dx, float dy, float deg)
 {
     uint8_t *frames[FRAMES];
@@ -83,9 +83,9 @@ static RendererOptions options_of(int samples, Shadow shadow)
                              .shadow = {.kind = shadow, .side = 256, .spacing = 200}};
 }
 
-// Measured: 1.1 (quads) and 0.8 (blocks), most of it where a ribbon's edge comes into a pixel and
-// the curve of sRGB is steep: a value that grows from 0 by 1/400 of white for each frame is 4
-// levels off in the first of them.
+// Measured: 1.1 (quads) and 0.8 (blocks). Most of it occurs where a ribbon's edge enters a pixel,
+// because the sRGB curve is steep there: a value that grows from 0 by 1/400 of white per frame
+// flickers by 4 levels in the first frame.
 static void hair_that_moves_does_not_flicker(void **state)
 {
     (void)state;
@@ -106,8 +106,8 @@ static void hair_that_moves_through_shadows_does_not_flicker(void **state)
     assert_true(off < 1.3);
 }
 
-// Measured: 0.7. A particle's light steps where a fibre's edge passes before it, by the map's
-// texels.
+// Measured: 0.7. The light at a particle jumps where the edge of a fibre passes in front of it,
+// because the shadow map has texels.
 static void a_light_that_moves_does_not_make_hair_flicker(void **state)
 {
     (void)state;

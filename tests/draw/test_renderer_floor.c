@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The eye, at z = 1000, sees the point of the floor at z in the row 100 * 1000 / (1000 - z) below
-// the middle.
+// The eye at z = 1000 sees the floor's point at z in the row 100 * 1000 / (1000 - z) below the
+// middle.
 enum { HEIGHT = -100, LAYERS = 3 };
 
-static const double AMBIENT = 0.15, OPACITY = 0.4; // the former as in render_picture.c
+static const double AMBIENT = 0.15, OPACITY = 0.4; // AMBIENT as in render_picture.c
 static const float RADIUS = 30;
 
 static RendererOptions with_floor(const RendererOptions *base, FloorKind kind)
@@ -52,8 +52,8 @@ static void add_layers(const Strands *layers)
     studio.material[item].shadow_opacity = (float)OPACITY;
 }
 
-// `expect` is told the exact share of the light that reaches the floor, and what a white floor
-// shows of it: square to the light, linear, where all of it reaches the floor.
+// `share`: the exact share of the light that reaches the floor; `light`: the linear colour of a
+// white floor that all of the light reaches.
 typedef void Expect(int column, int row, double share, double light);
 
 static void compare_with_exact(Expect *expect)
@@ -67,9 +67,9 @@ static void compare_with_exact(Expect *expect)
          .color = {1, 1, 1},
          .intensity = 0.5f,
          .shadow = true}};
-    // Not at an edge, where the map is soft: within two of its texels, each 1.5 units wide. Nor
-    // where one texel has three of a wide ribbon's points and its neighbours two: a fifth more
-    // optical depth.
+    // Places away from edges, where the map is soft within two of its texels, each 1.5 units wide;
+    // and away from places where one texel has three points of a wide ribbon and its neighbours
+    // have two, which increases optical depth by a fifth.
     const int places[][2] = {{SIDE / 2, SIDE / 2 + 99},       {SIDE / 2 - 15, SIDE / 2 + 99},
                              {SIDE / 2 - 50, SIDE / 2 + 99},  {SIDE / 2 - 65, SIDE / 2 + 99},
                              {SIDE / 2 - 118, SIDE / 2 + 99}, {SIDE / 2, SIDE / 2 + 112},
@@ -103,7 +103,7 @@ static void compare_with_exact(Expect *expect)
     strands_destroy(&layers);
 }
 
-// The map's own error (test_shadow.c allows 0.03 of the light: 4 levels here).
+// Allows for the map's own error: test_shadow.c allows 0.03 of the light, 4 levels here.
 static void expect_plane(int column, int row, double share, double light)
 {
     const uint8_t *pixel = studio_pixel(&studio, column, row);
@@ -125,7 +125,7 @@ static void expect_shadow(int column, int row, double share, double light)
 {
     const uint8_t *pixel = studio_pixel(&studio, column, row);
     double expected = 255 * (1 - (AMBIENT + light * share) / (AMBIENT + light));
-    if (fabs(pixel[3] - expected) > 6) // levels are linear here
+    if (fabs(pixel[3] - expected) > 6) // alpha is linear
         fail_msg("pixel %d, %d: %d, expected %.1f", column, row, pixel[3], expected);
     assert_int_equal(pixel[0], 0);
 }
@@ -139,7 +139,7 @@ static void a_catcher_has_the_shadow_alone_in_its_alpha(void **state)
     assert_int_equal(studio_pixel(&studio, 5, SIDE / 2 + 120)[3], 0);
 }
 
-// On white, what is behind the shadow darkens as a white floor in so much light would.
+// On a white background, the shadow darkens it like a white floor in that light.
 static void a_catcher_darkens_an_opaque_background(void **state)
 {
     (void)state;
@@ -157,7 +157,7 @@ static void a_catcher_darkens_an_opaque_background(void **state)
     strands_destroy(&layers);
 }
 
-// The mesh stands 50 above the floor, square to the light; beside it, hair alone.
+// The mesh hovers 50 above the floor, at right angles to the light; next to it, hair alone.
 static void the_mesh_throws_its_shadow_on_the_floor_too(void **state)
 {
     (void)state;
@@ -186,7 +186,7 @@ static void the_mesh_throws_its_shadow_on_the_floor_too(void **state)
     strands_destroy(&layers);
 }
 
-// A line under the floor, half-way to its edge.
+// A line below the floor, half-way to its edge.
 static void a_plane_hides_what_is_below_it_a_catcher_does_not(void **state)
 {
     (void)state;
@@ -213,7 +213,7 @@ static void without_a_floor_or_below_it_nothing_is_drawn(void **state)
     const Passes *passes = raster == RASTER_QUADS ? stage_passes() : NULL;
     if (passes) assert_int_equal(passes->target.depth, 0);
     options = with_floor(&BLACK, FLOOR_PLANE);
-    options.floor.middle[1] = 100; // over the eye
+    options.floor.middle[1] = 100; // above the eye
     use(&options);
     assert_draws_the_same(plain, size);
     passes = raster == RASTER_QUADS ? stage_passes() : NULL;
@@ -221,14 +221,15 @@ static void without_a_floor_or_below_it_nothing_is_drawn(void **state)
     free(plain);
 }
 
-// A light from below reaches nothing, the middle is whole up to its edge, and fades behind it.
+// A light from below does not reach the floor. The floor is complete up to its radius and fades
+// beyond.
 static void a_floor_is_lit_from_above_and_fades_beyond_its_radius(void **state)
 {
     (void)state;
     RendererOptions options = with_floor(&BLACK, FLOOR_PLANE);
     double point[3];
     find_floor_point(SIDE / 2, SIDE / 2 + 99, point);
-    // Just inside and just beyond the radius of that point, whose z is near 0.
+    // The floor's radius ends just beyond that point and just before it; its z is near 0.
     for (int inside = 0; inside < 2; ++inside) {
         options.floor.middle[2] = (float)point[2] + 200;
         options.floor.whole = inside ? 205 : 100;
@@ -242,7 +243,7 @@ static void a_floor_is_lit_from_above_and_fades_beyond_its_radius(void **state)
     }
 }
 
-// Where there is no hair both rasterisers show the same floor; either one in its turn keeps it.
+// Both rasterisers show the same floor where there is no hair, and drawing hair keeps it.
 static void both_rasterisers_show_the_same_floor(void **state)
 {
     (void)state;

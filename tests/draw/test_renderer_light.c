@@ -22,19 +22,18 @@ static void mesh_hides_the_hair_behind_it_only(void **state)
     const float green[3] = {0, 1, 0};
     assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, green, &error), RESULT_OK);
     mesh_destroy(&mesh);
-    add_line((float[3]){-90, 20, 10}, (float[3]){90, 20, 10}, 3, 1);     // before it
+    add_line((float[3]){-90, 20, 10}, (float[3]){90, 20, 10}, 3, 1);     // in front of the mesh
     add_line((float[3]){-90, -20, -10}, (float[3]){90, -20, -10}, 3, 1); // behind it
     studio_draw(&studio);
     assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 - 20)[0], 255);
     assert_int_equal(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[0], 0);
-    assert_true(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[1] > 50); // lit by what is ambient
+    assert_true(studio_pixel(&studio, SIDE / 2, SIDE / 2 + 20)[1] > 50); // lit by ambient light
     assert_int_equal(studio_pixel(&studio, SIDE / 2 + 70, SIDE / 2 + 20)[0], 255);
     assert_int_equal(studio_pixel(&studio, 5, 5)[1], 0);
 }
 
-// A leaning grey square before a strand that fills its surroundings, white: no pixel along the
-// edges is as dark as some share of the black background would make it, with either number of
-// samples.
+// A slanted grey square in front of a white strand that fills its surroundings: no pixel along the
+// edges is darkened by the black background, with either number of samples.
 static void no_background_shows_between_a_silhouette_and_hair(void **state)
 {
     (void)state;
@@ -59,8 +58,8 @@ static void no_background_shows_between_a_silhouette_and_hair(void **state)
     mesh_destroy(&mesh);
 }
 
-// Hundreds of strands, wide ones too, on both sides of a mesh that fills a part of the picture:
-// what is seen through it is nothing, and beside it the picture is as without the mesh.
+// Hundreds of strands, some wide, on both sides of a mesh that fills part of the image: the mesh
+// hides all hair behind it, and beside it the image is as without the mesh.
 static void a_mesh_hides_all_of_many_strands(void **state)
 {
     (void)state;
@@ -71,7 +70,7 @@ static void a_mesh_hides_all_of_many_strands(void **state)
         use(&BLACK);
         add_tangle(200, wide ? 9 : 0.7f, 0.5f, NULL);
         uint8_t *without = draw_copy(&size);
-        for (int v = 0; v < 4; ++v) mesh.position[v][2] = 300; // before all of them
+        for (int v = 0; v < 4; ++v) mesh.position[v][2] = 300; // in front of all strands
         assert_int_equal(renderer_set_mesh(&studio.renderer, &mesh, (float[3]){0}, &error),
                          RESULT_OK);
         studio_draw(&studio);
@@ -91,8 +90,8 @@ static void a_mesh_hides_all_of_many_strands(void **state)
     mesh_destroy(&mesh);
 }
 
-// Two strands 2 px before and behind a mesh that slopes away from the eye, by 1 px a pixel: depths
-// must be right in every pixel, not on the average of some.
+// Two strands 2 px in front of and behind a mesh that slopes away from the eye by 1 px per pixel:
+// depths must be right in every pixel, not just on average.
 static void hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden(void **state)
 {
     (void)state;
@@ -112,7 +111,8 @@ static void hair_close_to_a_sloping_mesh_is_all_seen_or_all_hidden(void **state)
     }
 }
 
-// A white strand along x that only the light shows, and what its middle looks like, 0..1.
+// Draws a white strand along x that is lit by this light alone; returns the brightness of its
+// middle, 0..1.
 static double light_strand(const Light *light)
 {
     studio.light = *light;
@@ -138,12 +138,13 @@ static void light_falls_off_by_the_square_of_the_distance(void **state)
     assert_true(fabs(light_strand(&light) - 0.8) < 0.01);
     light.distance = 250;
     assert_true(fabs(light_strand(&light) - 0.2) < 0.01);
-    light.position[0] = 1e6f; // along the strand, and far away
+    light.position[0] = 1e6f; // far away in the strand's direction
     assert_true(light_strand(&light) < 0.001);
 }
 
-// A lamp in the hair shines a million times as bright as at its distance and no more, whose square
-// would be four million times as much. A block shows its middle, up to 2 px off: a fifteenth.
+// A lamp inside the hair is at most a million times as bright as at its reference distance; the
+// squared distance would give four million. A block shows its middle, which is up to 2 px away: a
+// fifteenth is allowed.
 static void a_lamp_that_touches_hair_stays_finite(void **state)
 {
     (void)state;
@@ -156,8 +157,9 @@ static void a_lamp_that_touches_hair_stays_finite(void **state)
     assert_true(fabs(light_strand(&lamp) - 0.4) < 0.01 + 0.4 / 15);
 }
 
-// Full up to the inner angle, half as much (squared) half-way by cosine, nothing beyond. The next
-// vertices, 30 px off, are darker, and a block shows its middle, up to 2 px off: a fifteenth.
+// Full brightness up to the inner angle, a quarter half-way between the cosines, none beyond the
+// outer angle. The next vertices, 30 px away, are darker, and a block shows its middle, which is up
+// to 2 px away: a fifteenth is allowed.
 static void a_spot_shines_into_its_cone(void **state)
 {
     (void)state;
@@ -179,8 +181,8 @@ static void a_spot_shines_into_its_cone(void **state)
     }
 }
 
-// The strand stands 60 px before the square, in light that comes 37 degrees from the right: its
-// shadow falls 45 px to its left. What the light brings there is less by the strand's opacity.
+// The strand is 60 px in front of the square, and the light comes from 37 degrees to the right, so
+// that its shadow lies 45 px to its left. There the light is reduced by the strand's opacity.
 static void a_strand_throws_its_shadow_on_the_mesh(void **state)
 {
     (void)state;
@@ -207,8 +209,8 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
     }
 }
 
-// A mesh that covers 0.4 of a pixel, and with it two of its four samples but not the middle, shows
-// by half.
+// A mesh that covers 0.4 of a pixel, with two of its four samples but not its middle, is visible by
+// half.
 static void an_edge_of_the_mesh_shows_by_its_samples(void **state)
 {
     (void)state;
@@ -226,8 +228,7 @@ static void an_edge_of_the_mesh_shows_by_its_samples(void **state)
     assert_int_equal(studio_pixel(&studio, SIDE / 2 + 51, SIDE / 2)[0], 0);
 }
 
-// What the middle of a square shows of a light that comes in at `a` degrees, beyond what it shows
-// without one.
+// The brightness of a square's middle due to a light at `a` degrees, without the ambient part.
 static double light_on_square(double a)
 {
     const double turn = a * 3.14159265358979 / 180;
@@ -244,8 +245,8 @@ static double light_on_square(double a)
     return shown[1] - shown[0];
 }
 
-// Skin seen square to it, whose highlight a black mesh shows alone, against the formulas that
-// kernel/skin.h names, in double precision. Pixels of the mesh are halves: a step is 2^-11 of them.
+// Skin seen at right angles against the formulas that kernel/skin.h cites, in double precision; a
+// black mesh shows the highlight alone. The mesh's pixels are half floats: a step is 2^-11.
 static void skin_has_a_soft_edge_and_a_highlight(void **state)
 {
     (void)state;
@@ -274,7 +275,7 @@ static void skin_has_a_soft_edge_and_a_highlight(void **state)
     mesh_destroy(&mesh);
 }
 
-// What a square of skin of this grey shows where it sees the share `open` of the sky.
+// The brightness of a grey square of skin that sees the share `open` of the sky.
 static double sky_on_square(const Mesh *mesh, float grey, float open)
 {
     const float color[3] = {grey, grey, grey}, shares[4] = {open, open, open, open};
@@ -290,8 +291,9 @@ static double sky_on_square(const Mesh *mesh, float grey, float open)
                                                       sizeof(float));
 }
 
-// A surface that sees the share o of the sky, and else its like, has the light o / (1 - c (1 - o)):
-// white ones show all of the sky however little they see of it. Pixels of the mesh are halves.
+// A surface of colour c that sees the share o of the sky, and in other directions surfaces like
+// itself, has the light o / (1 - c (1 - o)): white surfaces are fully lit, however little of the
+// sky they see. The mesh's pixels are half floats.
 static void what_hides_the_sky_sends_on_its_light(void **state)
 {
     (void)state;
@@ -320,8 +322,8 @@ static void put_square(void)
     mesh_destroy(&mesh);
 }
 
-// Hair moves before a still mesh (a studio's hair is another one in every picture), light and eye
-// do: pictures are those of a renderer that has drawn nothing before.
+// Hair moves in front of a still mesh (a studio has new hair in every image), and the light and the
+// eye move: the images equal those of a renderer that has not drawn before.
 static void a_mesh_is_drawn_again_where_it_looks_different(void **state)
 {
     (void)state;

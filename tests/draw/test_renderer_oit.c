@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which rasteriser draws, and what quads do with the fragments of a pixel.
+// Which rasteriser is chosen, and how quads combine the fragments of a pixel.
 #include "draw/drawing.h"
 #include "support/stage.h"
 
@@ -35,7 +35,7 @@ static void the_driver_chooses_the_rasteriser(void **state)
         open_studio(asked, OIT_AUTO, 0);
         assert_int_equal(studio.renderer.options.raster, asked);
     }
-    open_studio(RASTER_AUTO, OIT_NONE, 0); // the others know one order only
+    open_studio(RASTER_AUTO, OIT_NONE, 0); // the other rasterisers have one order only
     assert_int_equal(studio.renderer.options.raster, RASTER_QUADS);
     open_studio(RASTER_AUTO, OIT_ABUFFER, 0);
     assert_int_equal(studio.renderer.options.raster, RASTER_QUADS);
@@ -47,7 +47,7 @@ enum { STACK = 12, COLORS = 3 };
 static const double OPACITY = 0.2;
 static const float COLOR[COLORS][3] = {{0.9f, 0.2f, 0.1f}, {0.1f, 0.6f, 0.2f}, {0.2f, 0.1f, 0.8f}};
 
-// Wide bands one behind the other, a third of them of each colour.
+// Wide bands one behind the other, a third of them in each colour.
 static void add_stack(void)
 {
     enum { EACH = STACK / COLORS };
@@ -64,8 +64,8 @@ static void add_stack(void)
     }
 }
 
-// Channel k of the nearest `ordered` one over the other, under them all others as one of their mean
-// colour that lets through what they do together.
+// Expected value of channel k: the `ordered` nearest bands over one another, and under them all
+// others as one band of their mean colour and total transparency.
 static double expect(int ordered, int k)
 {
     double sum = 0, rest = 0, through = 1, hidden = 1 - pow(1 - OPACITY, STACK - ordered);
@@ -81,7 +81,7 @@ static double expect(int ordered, int k)
     return sum + through * hidden * rest;
 }
 
-// Fragments are halves: a level, rounding included.
+// Fragments are half floats: one level is allowed, including rounding.
 static void so_many_layers_are_in_order(void **state)
 {
     (void)state;
@@ -119,15 +119,15 @@ static int draw_rest(int count, float opacity)
     return *studio_pixel(&studio, SIDE / 2, SIDE / 2);
 }
 
-// 1 - 0.997^200 of the light. Each fragment's optical depth is within 1/8192 of 0.00433: 3 %.
+// Expected: 1 - 0.997^200 of the light. Each fragment's optical depth, 0.00433, is accurate to
+// 1/8192: 3 %.
 static void faint_fragments_add_up(void **state)
 {
     (void)state;
     assert_true(fabs(draw_rest(200, 0.003f) - srgb(1 - pow(0.997, 200))) <= 3);
 }
 
-// Two ribbons in one place that differ in blue alone: the order in which they are drawn does not
-// show.
+// Two ribbons at the same place that differ only in blue: the image does not depend on their order.
 static void equal_depths_are_ordered_by_all_of_the_colour(void **state)
 {
     (void)state;
@@ -147,7 +147,7 @@ static void equal_depths_are_ordered_by_all_of_the_colour(void **state)
         studio_clear(&studio);
     }
     assert_memory_equal(seen[0], seen[1], 3);
-    assert_true(seen[0][2] > 100 && seen[0][2] < 250); // both colours are seen
+    assert_true(seen[0][2] > 100 && seen[0][2] < 250); // both colours contribute
 }
 
 static void together_they_can_hide_all(void **state)
@@ -156,7 +156,7 @@ static void together_they_can_hide_all(void **state)
     assert_in_range(draw_rest(12, 0.9f), 254, 255);
 }
 
-// The brightest light of 30,000 opaque fragments in a pixel: their sums do not overflow.
+// 30,000 opaque fragments of the brightest light in one pixel: their sums do not overflow.
 static void sums_of_very_many_bright_fragments_are_whole(void **state)
 {
     (void)state;

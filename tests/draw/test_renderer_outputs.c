@@ -7,9 +7,9 @@
 #include <string.h>
 
 static const RendererOptions SMALL = {
-    .width = 101, .height = 67, .background = {0.2f, 0.1f, 0.4f, 1}}; // px: no whole blocks
+    .width = 101, .height = 67, .background = {0.2f, 0.1f, 0.4f, 1}}; // px: no multiples of blocks
 
-// With these options and a mesh that slopes through the hair.
+// Sets these options and a mesh that slopes through the hair.
 static void use_with_mesh(const RendererOptions *options)
 {
     const float green[3] = {0, 1, 0};
@@ -24,7 +24,7 @@ static void use_with_mesh(const RendererOptions *options)
     mesh_destroy(&mesh);
 }
 
-// Curved strands, and a wide one through the mesh.
+// Curved strands, and a wide strand through the mesh.
 static void add_hair(void)
 {
     add_tangle(300, 0.7f, 0.6f, NULL);
@@ -44,7 +44,7 @@ static size_t count_values(const Image *image)
     return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
 }
 
-// Half a level of rounding; srgb_from_linear is off by 0.012.
+// Allows half a level for rounding and 0.012 for srgb_from_linear.
 static void every_kind_shows_the_same_picture(void **state)
 {
     (void)state;
@@ -65,8 +65,8 @@ static void every_kind_shows_the_same_picture(void **state)
     }
 }
 
-// A picture of s x s samples is one of s times its size, averaged in light. Blocks sum in floats of
-// 24 bits; quads' fragments are the same halves in both.
+// An image with s x s samples per pixel equals one of s times the size that is averaged in linear
+// light. Blocks sum in 32-bit floats; quads' fragments have the same half floats in both.
 static void check_samples(int side)
 {
     View view;
@@ -116,7 +116,7 @@ static void three_samples_are_refused(void **state)
     assert_non_null(strstr(error.text, "expected 1, 2 or 4"));
 }
 
-// Levels of detail go by what is seen of a strand, not by how finely it is drawn.
+// Level of detail depends on the strand's size in the image, not on the number of samples.
 static void samples_leave_the_number_of_strands(void **state)
 {
     (void)state;
@@ -153,8 +153,8 @@ static void what_is_nearest_has_one_sample(void **state)
     }
 }
 
-// A square that faces the eye 10 nearer than the middle, with a strand behind it and a strand
-// beside.
+// A square that faces the eye, 10 nearer than the middle, with one strand behind it and one next to
+// it.
 static void a_mesh_has_a_depth(void **state)
 {
     (void)state;
@@ -180,8 +180,8 @@ static void a_mesh_has_a_depth(void **state)
     assert_true(float_at(&studio.image, middle - 25 * row) == 0);
 }
 
-// Draws by the one rasteriser and by another, of quads by blocks, of others by quads: the share of
-// values that differ by more than `tolerance`, among those that are not 0 with both.
+// Draws by two rasterisers: the one under test, and blocks (or quads if it is blocks). Returns the
+// share of values that differ by more than `tolerance`, among those that are not 0 in both.
 static double share_that_differs(const RendererOptions *options, double tolerance)
 {
     size_t touched = 0, different = 0;
@@ -206,9 +206,9 @@ static double share_that_differs(const RendererOptions *options, double toleranc
     return (double)different / (double)touched;
 }
 
-// Which strand covers a 512th of a pixel is a matter of rounding in few of them; elsewhere all
-// are equal: a hash to the byte, a tangent to a level, a depth to a thousandth, as straightened
-// ribbons are.
+// In a few pixels, rounding decides which strand covers a 512th of the pixel. All other pixels are
+// equal: a hash to the byte, a tangent to one level, a depth to a thousandth, since straight pieces
+// replace curves.
 static void rasterisers_agree_on_what_is_nearest(void **state)
 {
     (void)state;
@@ -231,8 +231,9 @@ static void rasterisers_agree_on_what_is_nearest(void **state)
     }
 }
 
-// Quads keep halves (11 bits) and sum the rest in steps: a level, and half a level of rounding.
-// Strands are straight: of curves each may leave out other points.
+// Quads store half floats (11 bits) and sum the remaining layers in steps: one level, and half a
+// level for rounding. Strands are straight, because each rasteriser may leave out other points of
+// curves.
 static void rasterisers_agree_on_coverage(void **state)
 {
     (void)state;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The A-buffer's pool grows as needed; where it may not, the image is drawn in bands.
+// The A-buffer's pool grows as needed; where it may not grow, the image is drawn in bands.
 #include "support/needed.h"
 #include "support/stage.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { SMALL_POOL = 1 << 17 }; // for a tangle
+enum { SMALL_POOL = 1 << 17 }; // for a tangle of strands
 
 static void a_pool_that_is_too_small_grows(void **state)
 {
@@ -66,8 +66,8 @@ static Image late_image(const RendererOptions *options)
     return image;
 }
 
-// The first image is taken when the next one has been begun, over which the pool has been found
-// too small; both are what they are one at a time.
+// The first image is read after the next has been started and has found the pool too small. Both
+// images equal those that are drawn one at a time.
 static void an_image_that_comes_late_has_all_of_its_hair(void **state)
 {
     (void)state;
@@ -80,12 +80,12 @@ static void an_image_that_comes_late_has_all_of_its_hair(void **state)
     add_tangle(6000, 6, 0.4f, NULL);
     studio_view(&view[0], 512, 512);
     studio_view(&view[1], 512, 512);
-    view[1].projection[0][0] *= 2; // less hair in sight
+    view[1].projection[0][0] *= 2; // less hair is visible
     for (int i = 0; i < 2; ++i) {
         studio_draw_view(&studio, &view[i]);
         expected[i] = studio_copy(&studio, &size);
     }
-    use(&large); // its pool is small again
+    use(&large); // makes the pool small again
     Image image[2] = {late_image(&large), late_image(&large)};
     int place[2];
     for (int i = 0; i < 2; ++i) {
@@ -107,7 +107,7 @@ static void an_image_that_comes_late_has_all_of_its_hair(void **state)
     }
 }
 
-// Its pixels are all of one 8x8 block, so of one shard.
+// All its pixels lie in one 8x8 block and therefore in one shard.
 static void a_small_picture_uses_the_whole_pool(void **state)
 {
     (void)state;
@@ -122,7 +122,8 @@ static void a_small_picture_uses_the_whole_pool(void **state)
     assert_int_equal(studio.renderer.counts.bands, 1);
 }
 
-// CPU drivers end loops silently after 65,535 turns: no picture is made without a word.
+// CPU drivers end loops silently after 65,535 iterations: that must be an error instead of a wrong
+// image.
 static void more_layers_than_a_loop_can_visit_are_an_error(void **state)
 {
     (void)state;
@@ -148,7 +149,7 @@ static void a_row_that_no_pool_holds_is_an_error(void **state)
 {
     (void)state;
     RendererOptions tiny = BLACK;
-    tiny.pool_bytes = 1; // the least there can be
+    tiny.pool_bytes = 1; // the smallest possible
     use(&tiny);
     add_tangle(3000, 8, 0.4f, NULL);
     View view;
@@ -161,7 +162,7 @@ static void a_row_that_no_pool_holds_is_an_error(void **state)
     assert_non_null(strstr(error.text, "one row"));
 }
 
-// Where the pool is short of room, bands end between pixels, not in their midst.
+// Where the pool is short of memory, bands end between pixels, never between a pixel's samples.
 static void samples_do_not_depend_on_bands(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Marschner's table against the reference, and what holds for all light.
+// Marschner's table against the reference, and properties that hold for all light.
 #include "draw/drawing.h"
 #include "draw/scatter_tables.h"
 #include "gpu/gpu_buffer.h"
@@ -22,7 +22,7 @@
 
 static Gpu gpu;
 static ScatterTables tables;
-static GLuint programs[2]; // probe_shade.comp, by Lobes
+static GLuint programs[2]; // probe_shade.comp, indexed by Lobes
 
 static int open_gpu(void **state)
 {
@@ -67,7 +67,7 @@ static void set_direction(Direction d, double theta, double phi)
     d[3] = 0;
 }
 
-// f for `count` pairs of directions (towards the light, towards the eye), on the GPU.
+// Computes f for `count` pairs of directions (towards the light, towards the eye) on the GPU.
 static void scatter(const SectionParams *params, int count, Direction (*pairs)[2], float (*f)[4])
 {
     GpuBuffer in, out;
@@ -97,7 +97,7 @@ static void scatter(const SectionParams *params, int count, Direction (*pairs)[2
     gpu_buffer_destroy(&out);
 }
 
-// Between nodes as a texture unit does it, which reads a table of 128 x 64 x 24 nodes.
+// Interpolates between nodes like a texture unit; the table has 128 x 64 x 24 nodes.
 static double read_table(const float (*table)[4], const double at[3], int lobe)
 {
     const int nodes[] = {SCATTER_AZIMUTHS, SCATTER_INCLINATIONS, SCATTER_COLORS};
@@ -121,13 +121,13 @@ static double read_table(const float (*table)[4], const double at[3], int lobe)
     return sum;
 }
 
-// The largest difference to quadrature between cosines of theta_d, straight lines between nodes
-// included.
+// The largest difference from quadrature within a range of cos(theta_d), including the error of
+// linear interpolation between nodes.
 static double table_error(double eta, double roughness, const float (*table)[4], double from,
                           double to)
 {
     double worst = 0;
-    for (int i = 0; i < 1000; ++i) { // spread by three irrational steps
+    for (int i = 0; i < 1000; ++i) { // spread evenly by three irrational steps
         double at[3] = {fmod(i * 0.618034, 1), from + (to - from) * fmod(i * 0.754878, 1),
                         fmod(i * 0.569840, 1)};
         double exact[LOBE_COUNT];
@@ -138,7 +138,7 @@ static double table_error(double eta, double roughness, const float (*table)[4],
     return worst;
 }
 
-// Densities are up to 1.9 a radian. Below cos(theta_d) of 0.02, a degree off the fibre's own
+// Densities are up to 1.9 per radian. Below cos(theta_d) = 0.02, one degree from the fibre's
 // direction, they change within one step of the table.
 static void the_table_is_the_quadrature(void **state)
 {
@@ -158,7 +158,7 @@ static void the_table_is_the_quadrature(void **state)
     }
 }
 
-// All beams, for light and eye at any inclination, tilted by the scales.
+// All lobes, for light and eye at any inclination, with tilted scales.
 static void compare_with_reference(Lobes lobes)
 {
     enum { COUNT = 2000 };
@@ -187,7 +187,8 @@ static void compare_with_reference(Lobes lobes)
             sum += m * n[p];
             scale += m;
         }
-        // The table's 1e-3, the Bessel function's 6e-4 and float32's exponent of up to 1/v = 51.
+        // Allowed: 1e-3 for the table, 6e-4 for the Bessel function, and float32's rounding in an
+        // exponent of up to 1/v = 51.
         worst = fmax(worst, fabs((double)f[i][0] - sum) / (1e-3 * scale + 1e-3 * sum + 1e-5));
         if (worst > 1)
             fail_msg("theta %g -> %g, phi %g: %g instead of %g", theta_i, theta_r, phi,
@@ -213,7 +214,7 @@ enum { THETAS = 90, PHIS = 64 };
 static Direction around[THETAS * PHIS][2];
 static float from_around[THETAS * PHIS][4];
 
-// Directions to the light all around, in cells of equal angles; the eye at `theta`.
+// Directions to the light all around, in cells of equal angles, with the eye at `theta`.
 static void look_from(double theta)
 {
     for (int i = 0; i < THETAS * PHIS; ++i) {
@@ -228,8 +229,8 @@ static double cell(int i)
     return cos((i / PHIS + 0.5) * PI / THETAS - PI / 2) * (PI / THETAS) * (2 * PI / PHIS);
 }
 
-// Under light 1 from everywhere a fibre without pigment shows 1, seen from any side, whatever its
-// roughness and tilt.
+// Under light of 1 from all directions, a fibre without pigment shows 1 from any side, for all
+// roughnesses and tilts.
 static void a_white_furnace_is_white(void **state)
 {
     (void)state;
@@ -266,13 +267,15 @@ static void pigment_takes_light_away(void **state)
     scatter(&params, THETAS * PHIS, around, from_around);
     for (int i = 0; i < THETAS * PHIS; ++i)
         for (int k = 0; k < 3; ++k) sum[k] += cell(i) * (double)from_around[i][k];
-    assert_true(1 > sum[0] && sum[0] > sum[1] && sum[1] > sum[2] && sum[2] > 0.04); // F alone: 0.06
+    // F alone, the Fresnel reflection: 0.06
+    assert_true(1 > sum[0] && sum[0] > sum[1] && sum[1] > sum[2] && sum[2] > 0.04);
     params_destroy_section(&params);
 }
 
-// S = f / cos(theta_i) is the same for light that goes the other way, scales or not. Rounding:
-// angles err by 3e-7 (asin), which a Gaussian off by 6 widths of 8 degrees takes times 43; the
-// table is read at azimuths that differ by the cosine's rounding, at worst sqrt(2e-7) next to 0.
+// S = f / cos(theta_i) is the same if the light goes the other way, with or without tilted scales.
+// Rounding: angles err by 3e-7 (asin), and a Gaussian at 6 widths of 8 degrees multiplies that by
+// 43. The table is read at azimuths that differ by the rounding of the cosine, at worst sqrt(2e-7)
+// near 0.
 static void light_goes_either_way_alike(void **state)
 {
     (void)state;
@@ -299,7 +302,7 @@ static void light_goes_either_way_alike(void **state)
     params_destroy_section(&params);
 }
 
-// Poles, equal and opposite directions included, for thin and thick pigment.
+// Includes poles and equal and opposite directions, for little and much pigment.
 static void no_direction_gives_nonsense(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The light that C finds at points of hair against the shaders': images of the same ribbons by
-// blocks and by compute.
+// The light that C computes at points of hair against shaders: images of the same ribbons by blocks
+// and by compute.
 #include "draw/hair_paint.h"
 #include "support/needed.h"
 #include "support/stage.h"
