@@ -108,7 +108,7 @@ static void paint_strands(uint32_t item, uint32_t count)
     free(paint.thickness);
 }
 
-// A grown-up share of light from highlights, so that they count.
+// Sets a material with a large share of specular light, so that errors of highlights are visible.
 static void dress(const Case *of, uint32_t count)
 {
     SectionParams *material = &studio.material[0];
@@ -139,12 +139,12 @@ static float *draw_light(const Case *of, Raster by)
     return (float *)(void *)studio_copy(&studio, &size);
 }
 
-// Light is kept in levels of 11 bits on either side, which are half a level off, and mixed by the
-// same shares: 2^-11 of it, and 1e-4 of sines and powers. A strand between two slices of a
-// section's own table is off by at most 0.35 / 15 / 0.65 of its colour from the nearer one, from
-// which TT goes with the power 1 in place of 0.5 to 1.5, TRT with 2 in place of 1 to 3. In deep
-// maps a point that is rounded to another texel takes up to 0.2 of the light with it, and compute
-// has the ends of strands as directions of 8 bits: a hundredth of the values is free.
+// Both keep light in levels of 11 bits, which err by half a level, and mix them by the same shares:
+// 2^-11 of the light, and 1e-4 for sines and powers. A strand's colour between two slices of its
+// section's table differs from the nearer slice by at most 0.35 / 15 / 0.65; from there TT is
+// extrapolated with power 1 instead of 0.5 to 1.5, and TRT with 2 instead of 1 to 3. In deep maps,
+// a point that is rounded to another texel changes its light by up to 0.2, and compute stores the
+// ends of strands as directions of 8 bits: a hundredth of the values may differ by more.
 static void blocks_shade_as_compute_does(void **state)
 {
     (void)state;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static ShadowWay way; // that is tested
+static ShadowWay way; // the way under test
 
 static int by_shaders(void **state)
 {
@@ -44,9 +44,10 @@ static void expect_light(ShadowStage *stage, float x, float y, float z, double e
     shadow_assert_near((double)light_at(stage, x, y, z), expected, tolerance);
 }
 
-// Strands much wider than a texel, so that what is smoothed is beside them. In each gap the layer
-// before lies wholly before the point, whatever the map's own layers are; the rest is the rounding
-// of sums to steps of 2^-16, some thousand of them, and points that share a texel.
+// Strands are much wider than a texel, so that their blurred edges lie far from the points. In each
+// gap, the layers in front of the point are complete, whatever the map's own layers are. The
+// tolerance covers sums of about a thousand values that are rounded to steps of 2^-16, and points
+// that share a texel.
 static void layers_of_hair_multiply(void **state)
 {
     (void)state;
@@ -62,13 +63,13 @@ static void layers_of_hair_multiply(void **state)
             expect_light(&stage, 0.1f, y, 0, pow(0.7, n), 0.03);
             expect_light(&stage, 0.1f, y, 0.2f, 1, 1e-6);
         }
-        expect_light(&stage, 3, -2, 0, 1, 0); // beside the map
+        expect_light(&stage, 3, -2, 0, 1, 0); // outside the map
         shadow_stage_close(&stage);
     }
 }
 
-// The other scheme supposes fibres at even distances. Where they are, it has the exact light behind
-// n of them, within the steps of its depths.
+// The approximate scheme assumes evenly spaced fibres. If they are evenly spaced, it gives the
+// exact light behind n of them, within the precision of its depths.
 static void approximated_layers_multiply_at_even_distances(void **state)
 {
     (void)state;
@@ -85,7 +86,7 @@ static void approximated_layers_multiply_at_even_distances(void **state)
     shadow_stage_close(&stage);
 }
 
-// Behind one fibre both schemes have its opacity, and before it all light.
+// Behind one fibre, both schemes reduce light by its opacity; in front of it, light is complete.
 static void one_fibre_takes_its_opacity(void **state)
 {
     (void)state;
@@ -109,17 +110,17 @@ static void mesh_stands_in_the_light(void **state)
         shadow_stage_open(&stage, shadow_stage_layers(2), 0.06f, 0.3f, &mesh,
                           lamp ? &LIGHT_LAMP : &LIGHT_ABOVE);
         draw_maps(&stage, SHADOW_DOM, 256, 1);
-        expect_light(&stage, 0.1f, -0.04f, 0, 0.7, 0.03); // before it
+        expect_light(&stage, 0.1f, -0.04f, 0, 0.7, 0.03); // in front of it
         expect_light(&stage, 0.1f, -0.06f, 0, 0, 1e-6);   // behind it
         expect_light(&stage, 0.1f, -0.08f, 0.25f, 0, 1e-6);
-        expect_light(&stage, 0.1f, -0.08f, 0.4f, 1, 1e-6); // beside it
+        expect_light(&stage, 0.1f, -0.08f, 0.4f, 1, 1e-6); // next to it
         shadow_stage_close(&stage);
     }
     mesh_destroy(&mesh);
 }
 
-// Light that comes in aslant lights a mesh evenly: it casts no shadow on itself. The hair's shadow
-// falls elsewhere.
+// Slanted light lights a mesh evenly: the mesh casts no shadow on itself. The hair's shadow falls
+// elsewhere.
 static void a_lit_mesh_has_no_shadow_of_its_own(void **state)
 {
     (void)state;
@@ -146,8 +147,9 @@ static void a_lit_mesh_has_no_shadow_of_its_own(void **state)
     }
 }
 
-// Integral of p (1 - p) across an edge (texels), p the share of the light that is gone: by the
-// definition of the map's filter, 5 x 5 texels with the weights of a cone of 3 texels.
+// Integral of p (1 - p) across a shadow's edge in texels, where p is the share of light that is
+// blocked, by the definition of the map's filter: 5 x 5 texels with the weights of a cone with a
+// radius of 3 texels.
 static double penumbra_of_cone(void)
 {
     enum { STEPS = 200 };
@@ -165,7 +167,8 @@ static double penumbra_of_cone(void)
     return sum;
 }
 
-// Of TressFX's maps. Where in a texel the point lies along the edge changes the figure by 1 %.
+// The filter of TressFX's maps. The point's position along the edge within a texel changes the
+// result by 1 %.
 static void the_edge_of_a_shadow_is_as_soft_as_its_filter(void **state)
 {
     (void)state;
@@ -174,7 +177,7 @@ static void the_edge_of_a_shadow_is_as_soft_as_its_filter(void **state)
     shadow_stage_open(&stage, shadow_stage_layers(1), 0.1f, 0.4f, NULL, &LIGHT_ABOVE);
     draw_maps(&stage, SHADOW_APPROX, 64, 1e5f);
     const float(*to)[4] = (const float(*)[4])shadow_stage_params(&stage)->from_world[0];
-    double texels = hypot((double)to[0][2], (double)to[1][2]), sum = 0; // a metre along z
+    double texels = hypot((double)to[0][2], (double)to[1][2]), sum = 0; // texels per metre along z
     float points[STEPS][4];
     for (int i = 0; i < STEPS; ++i)
         memcpy(points[i], ((float[4]){0.1f, -0.3f, 0.5f * ((float)i + 0.5f) / STEPS, 1}), 16);
@@ -188,8 +191,8 @@ static void the_edge_of_a_shadow_is_as_soft_as_its_filter(void **state)
     shadow_stage_close(&stage);
 }
 
-// Thickness and opacity that a file has: the first strand grows from 1 to 3 radii, the second one
-// lets half as much through as the material says.
+// Thickness and opacity from a file: the first strand grows from 1 to 3 radii, and the second has
+// half of the material's opacity.
 static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
 {
     (void)state;
@@ -215,7 +218,7 @@ static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
                                    {0.4f, 0.12f},   {0, 0.48f},     {0, 0.6f}};
         for (size_t i = 0; i < 6; ++i) {
             float x = places[i][0], z = places[i][1];
-            if (kind == SHADOW_APPROX && z > 0.4f) continue; // it knows the mean opacity only
+            if (kind == SHADOW_APPROX && z > 0.4f) continue; // knows the mean opacity only
             expect_light(&stage, x, -0.3f, z,
                          shadow_stage_exact(&stage, (double)x, -0.3, (double)z), 0.02);
         }
@@ -224,7 +227,8 @@ static void shadows_are_as_wide_and_dark_as_the_paint(void **state)
     shadow_stage_close(&stage);
 }
 
-// A bent strand of three particles as a B-spline, which passes its corner at two thirds of the way.
+// A bent strand of three particles as a B-spline, which reaches only two thirds of the way to its
+// corner.
 static void smooth_strands_cast_the_shadow_of_their_curve(void **state)
 {
     (void)state;
@@ -248,7 +252,8 @@ static void smooth_strands_cast_the_shadow_of_their_curve(void **state)
     shadow_stage_close(&stage);
 }
 
-// Three eighths of four strands side by side: one and a half, wider by the inverse share.
+// Three eighths of four parallel strands: one and a half strands, wider by the inverse of the
+// share.
 static void strands_left_out_cast_no_shadow(void **state)
 {
     (void)state;
@@ -260,23 +265,24 @@ static void strands_left_out_cast_no_shadow(void **state)
     }
     shadow_stage_open(&stage, strands, 0.02f, 0.4f, NULL, &LIGHT_ABOVE);
     Look *look = &stage.looks[0];
-    look->share = 0.375f; // one and a half
+    look->share = 0.375f; // one and a half strands
     look->material.radius /= look->share;
     for (Shadow kind = SHADOW_APPROX; kind <= SHADOW_DOM; ++kind) {
         draw_maps(&stage, kind, 256, 1e5f);
-        expect_light(&stage, 0, -0.1f, 0.04f, 0.6, 0.02);         // 0.053 to each side
-        expect_light(&stage, 0, -0.1f, 0.015f + 0.2f, 0.6, 0.02); // 0.027 to each side
+        expect_light(&stage, 0, -0.1f, 0.04f, 0.6, 0.02);         // half-width 0.053
+        expect_light(&stage, 0, -0.1f, 0.015f + 0.2f, 0.6, 0.02); // half-width 0.027
         expect_light(&stage, 0, -0.1f, 0.04f + 0.2f, 1, 0.02);
         expect_light(&stage, 0, -0.1f, 0.4f, 1, 0);
     }
-    for (uint32_t pass = 0; pass < 2; ++pass) { // a share that changes makes them anew
+    for (uint32_t pass = 0; pass < 2; ++pass) { // a changed share requires new maps
         assert_int_equal(shadow_stage_again(&stage), pass);
         look->share = 0.5f;
     }
     shadow_stage_close(&stage);
 }
 
-// Maps of a mesh that have been wiped show when they are drawn again: not where hair alone moves.
+// A mesh's maps are kept if only hair moves: the test erases them, so that one can see whether they
+// are drawn again.
 static void the_meshs_maps_are_kept_while_it_stands(void **state)
 {
     (void)state;
@@ -347,8 +353,8 @@ typedef struct Fit {
     double rms, bias;
 } Fit;
 
-// Against the exact light at every 7th vertex. Most of the difference is the exact light's own
-// noise: it steps by the opacity at every fibre's edge, the maps average over texels.
+// Compares with the exact light at every 7th vertex. Most of the difference is noise of the exact
+// light, which jumps by the opacity at every fibre's edge, while maps average over texels.
 static Fit judge(ShadowStage *stage)
 {
     const Strands *strands = &stage->strands;
@@ -373,7 +379,7 @@ static Fit judge(ShadowStage *stage)
     return fit;
 }
 
-// The bounds are the figures as measured (docs/light.md), and a little more.
+// The bounds are slightly above the measured values (docs/light.md).
 static void deep_maps_are_near_the_exact_light(void **state)
 {
     (void)state;

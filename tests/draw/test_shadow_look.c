@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What C over lanes finds that a mesh leaves of lights at points, beside the definition in double
-// precision.
+// The share of a light that a mesh leaves at points, computed over lanes, against its definition in
+// double precision.
 #include "lanes/shadow.h"
 
 #include "base/random.h"
@@ -18,7 +18,7 @@ enum {
     W = STRAND_TILE,
     SIDE = 64, // texels of a map
     MAPS = 2,
-    ROWS = 150, // of W points
+    ROWS = 150, // of W points each
     POINTS = ROWS * W,
     SQUARES = SIDE / SHADOW_MESH_SQUARE
 };
@@ -35,8 +35,9 @@ static float between(Random *random, double low, double high)
     return (float)(low + (high - low) * random_real(random));
 }
 
-// A slope with steps, so that tiles lie before, behind and across points; and before the third
-// squares a square far off, so that only what stands in their first column or row is before them.
+// A slope with steps, so that tiles lie in front of, behind and across points. One column or row of
+// texels, the first of a square, is near the light while the rest of that square is far away, so
+// that only it lies in front of the points.
 static void make_depths(MeshScene *scene, Random *random)
 {
     for (int m = 0; m < MAPS; ++m)
@@ -51,7 +52,7 @@ static void make_depths(MeshScene *scene, Random *random)
                      [(int)(random_real(random) * SIDE)] = between(random, 0, 1);
 }
 
-// The first light is directional, the second a lamp that some points lie behind.
+// The first light is directional; the second is a lamp, and some points lie behind it.
 static void make_params(ShadowParams *params)
 {
     const float rows[MAPS][4][4] = {
@@ -86,7 +87,7 @@ static double row_of(const float row[4], const float x[3])
            (double)row[2] * (double)x[2] + (double)row[3];
 }
 
-// What is left past the mesh; `near` says how close the point is to where a rounding decides.
+// The share of light that passes the mesh; `near` becomes the distance from where rounding decides.
 static double past(const MeshScene *scene, int map, const float x[3], double *near)
 {
     const ShadowParams *params = &scene->shadow.params;
@@ -127,7 +128,7 @@ SIMD_INLINE void find(const MeshScene *scene, int part)
 
 SIMD_STAGE(find, MeshScene)
 
-// Places in the map are off by 2^-23 of some hundred texels near the lamp, where w is 0.01.
+// Near the lamp, where w is 0.01, positions in the map err by 2^-23 of several hundred texels.
 static void test_definition(void **state)
 {
     (void)state;

@@ -12,12 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The same light but for rounding. A point that is rounded to another texel takes a quarter (the
-// middle of 1 2 1 each way) of the optical depth of two texels of fibre, 0.4 each, with it: 0.2 at
-// most. One that is read in the next layer lacks no more of its own, half of 0.4. Places of 128
-// texels are known to 1e-5 texels, so that one point of 1e5 is, and their depths to 1e-5 of
-// all, which is more of a layer near the first one, where layers begin with the root of the depth:
-// no more of the sum than five times that.
+// Equal light, except for rounding. A point that is rounded to another texel changes its optical
+// depth by a quarter (the middle of 1 2 1 in both directions) of that of two fibre texels, 0.4
+// each: 0.2 at most. A point that is read in the next layer misses at most half of its own 0.4.
+// Positions among 128 texels are accurate to 1e-5 texels, which moves one point of 1e5 to another
+// texel. Depths are accurate to 1e-5 of the whole range, which is a larger part of the first
+// layers, because layers are spaced by the root of the depth: at most five times as many points
+// change.
 static void expect_same_light(const float *a, const float *b, uint32_t count)
 {
     double most = 0, sum = 0;
@@ -28,8 +29,8 @@ static void expect_same_light(const float *a, const float *b, uint32_t count)
     if (!(most < 0.2 && sum < 5e-5)) fail_msg("off by %g, in the mean %g", most, sum);
 }
 
-// C and shaders make the same maps of fur and curls, finer and wider than texels, of straight
-// segments and of either curve, and find the same light by them.
+// C and shaders make the same maps of fur and curls, thinner and wider than texels, with straight
+// segments and both kinds of curve, and compute the same light from them.
 static void c_and_shaders_are_alike(void **state)
 {
     (void)state;
@@ -67,7 +68,7 @@ static void c_and_shaders_are_alike(void **state)
     }
 }
 
-// Sums are integers, and the least of some depths is the same in any order.
+// Sums are integers, and the minimum of depths does not depend on their order.
 static void c_makes_the_same_maps_with_any_thread_count(void **state)
 {
     (void)state;
@@ -104,14 +105,15 @@ static void c_makes_the_same_maps_with_any_thread_count(void **state)
         assert_memory_equal(depths[at], depths[0], sizeof depths[0]);
         assert_memory_equal(layers[at], layers[0], sizeof layers[0]);
     }
-    const int middle = TEXELS / 2 + SIDE / 2; // where there is hair
+    const int middle = TEXELS / 2 + SIDE / 2; // a place with hair
     assert_true(depths[0][middle] < 1 &&
                 layers[0][((size_t)middle / STRAND_TILE * SHADOW_LAYERS + SHADOW_LAYERS - 1) *
                           STRAND_TILE] != 0);
     shadow_map_destroy(&shadow);
 }
 
-// Points that were found once are those that each pass finds, of straight and of smooth hair.
+// Points that are computed once and kept equal those that each pass computes, for straight and
+// smooth hair.
 static void points_are_found_once(void **state)
 {
     (void)state;
@@ -142,8 +144,9 @@ static void points_are_found_once(void **state)
     }
 }
 
-// Of 101 strands with 40 at least every second one is taken, of each pair one and always the same;
-// each stands for what they have lost. The last strand, of half the width, counts by its width.
+// From 101 strands and a minimum of 40, every second strand is taken, always the same one of each
+// pair. Each is widened to stand for those left out. The last strand has half the width and counts
+// as half.
 static void a_sample_stands_for_all(void **state)
 {
     (void)state;
@@ -186,7 +189,7 @@ static void a_sample_stands_for_all(void **state)
             }
         assert_true(odd > 15 * N && odd < 35 * N);
     }
-    for (int least = 0; least <= 51; least += 51) { // all of them, as they are
+    for (int least = 0; least <= 51; least += 51) { // all of them, unchanged
         NEEDED(shadow_sample_take(&sample, (MappedCasters){&all, 1}, least, 1, &taken, error));
         assert_ptr_equal(taken.list[0].position, position);
         assert_int_equal(taken.list[0].material.drawn_strands, STRANDS);

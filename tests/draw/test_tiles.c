@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Images of any size are covered by few tiles that the driver draws and memory holds.
+// Images of any size are covered by few tiles, which are within the driver's limits and fit into
+// memory.
 #include "draw/tiles.h"
 
 #include <setjmp.h>
@@ -38,11 +39,11 @@ static void tiles_cover_the_image_and_fit_the_driver(void **state)
     check(16384, 16384, 4, most, 64);
     check(16384, 1, 4, most, 4);
     check(1, 16384, 4, most, 4);
-    check(7, 5, 1, 1, 5); // a row at least
+    check(7, 5, 1, 1, 5); // at least one row
     check(1, 1, 4, 1, 1);
 }
 
-// Every pixel of an image of 7 x 5 comes from its place in the tile that has it.
+// Every pixel of a 7 x 5 image comes from its place in the right tile.
 static void what_hangs_over_is_left_out(void **state)
 {
     (void)state;

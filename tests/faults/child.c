@@ -35,7 +35,7 @@ static bool same_name(const char *a, const char *b)
     return strncmp(a, b, length + 1) == 0;
 }
 
-// The parent's variables but those that are replaced.
+// Joins the parent's environment, except for replaced variables, with `own`.
 static void join_names(const char *names[NAMES_MOST], const char *const *own)
 {
     int count = 0;
@@ -49,7 +49,7 @@ static void join_names(const char *names[NAMES_MOST], const char *const *own)
     names[count] = NULL;
 }
 
-// A process group of its own, so that all of it can be killed.
+// Starts a process group, so that all its processes can be killed.
 static pid_t start(const Child *child, int errors)
 {
     posix_spawn_file_actions_t actions;

@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: MIT
-// A program run to its end, or to a signal, in bounded time.
+// Runs a program to its end, or until it is killed by a signal, within limited time.
 #pragma once
 
 #include <stdbool.h>
 
 typedef struct Child {
-    const char *folder;             // where it runs
+    const char *folder;             // working directory
     const char *program;            // path
-    char *const *arguments;         // NULL behind the last; [0] is the program's name
-    const char *const *environment; // NAME=VALUE besides the parent's, NULL behind the last
-    double limit_s;                 // then it is killed
+    char *const *arguments;         // NULL-terminated; [0] is the program's name
+    const char *const *environment; // NAME=VALUE in addition to the parent's environment,
+                                    // NULL-terminated
+    double limit_s;                 // the program is killed after that time
     double kill_after_s;            // negative: never
     int kill_signal;
 } Child;
 
 typedef struct ChildEnd {
-    bool hung;         // past limit_s
+    bool hung;         // exceeded limit_s
     int status;        // exit status, -1: ended by `signal`
     int signal;        // 0: none
     double seconds;    // wall clock
-    char errors[4000]; // standard error, cut, zero-terminated
+    char errors[4000]; // standard error, truncated, zero-terminated
 } ChildEnd;
 
-// Standard output goes to the file "stdout" beside the folder. Ends the calling program if nothing
-// can be started: a harness that cannot run must not pass.
+// Writes standard output to the file "stdout" next to the folder. Ends the calling program if
+// nothing can be started: a harness that cannot run must not pass.
 void child_run(const Child *child, ChildEnd *end);

@@ -10,7 +10,7 @@
 
 enum { JOBS_MOST = 64, COUNTS = 1 << 15, STREAM_CALLS = 8 };
 
-// A call to be made to fail: the `which`-th of its site.
+// The `which`-th call of a site, which is to fail.
 typedef struct Fault {
     char name[48];
     uint64_t site;
@@ -34,7 +34,7 @@ static void *take(void *block)
     exit(1);
 }
 
-// How often each site was called, by open addressing.
+// Number of calls per site, a hash table with open addressing.
 typedef struct Counts {
     uint64_t site[COUNTS];
     unsigned calls[COUNTS];
@@ -70,7 +70,8 @@ static void read_calls(Faults *faults, const char *path)
     faults->tally->calls = faults->count;
 }
 
-// Text goes to a buffer: all calls of a site fail in the same few places, where it is written.
+// Text output goes to a buffer, so that all calls of a site fail at the same few places, where the
+// buffer is written.
 static bool is_stream(const char *name)
 {
     static const char *const names[] = {"fwrite", "fputs", "fputc", "putc", "fprintf", "printf"};
@@ -79,7 +80,7 @@ static bool is_stream(const char *name)
     return false;
 }
 
-// Of the short form first calls of some sites, of the long form all calls or some of each site.
+// Short form: the first calls of some sites. Long form: all calls, or a few of each site.
 static void choose(Faults *faults)
 {
     const TortureOptions *options = faults->options;
@@ -99,7 +100,7 @@ static void choose(Faults *faults)
     faults->count = kept;
 }
 
-// An undisturbed run, which lists its calls.
+// Runs the program without faults to list its calls.
 static void list_calls(Faults *faults)
 {
     const TortureOptions *options = faults->options;
@@ -109,7 +110,7 @@ static void list_calls(Faults *faults)
     snprintf(bin, sizeof bin, "%s/faults", options->bin);
     place_create(&place, options->work, 0);
     Attempt attempt = {.bin = bin,
-                       .fault = "none", // warms the driver's cache of shaders
+                       .fault = "none", // fills the driver's shader cache
                        .limit_s = 10 * options->limit_s,
                        .kill_after_s = -1};
     place_run(&place, faults->run, &attempt, &end);
@@ -125,7 +126,7 @@ static void list_calls(Faults *faults)
     choose(faults);
 }
 
-// What the injector has noted: whether the fault came about, and the reason it gave.
+// Reads the injector's log: whether the call was made to fail, and with which reason.
 static bool read_reason(const Place *place, char reason[100])
 {
     char line[200] = "";

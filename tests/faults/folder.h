@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What lies in a folder: names and bytes of its files, to compare with another time's.
+// Names and bytes of the files in a folder, to compare with another state of it.
 #pragma once
 
 #include <stdbool.h>
@@ -18,14 +18,14 @@ typedef struct Folder {
     int count;
 } Folder;
 
-// Reads all files of the folder itself (none of folders in it). Ends the program if it cannot.
+// Reads all files directly in the folder. Ends the program on failure.
 void folder_read(Folder *folder, const char *path);
 void folder_destroy(Folder *folder);
 
-// NULL: no such file.
+// NULL: no file has this name.
 const FolderFile *folder_find(const Folder *folder, const char *name);
 bool folder_same(const FolderFile *a, const FolderFile *b);
 
-// Removes the folder with all that is in it and makes it anew, empty.
+// Empties the folder, or creates it.
 void folder_clear(const char *path);
 void folder_remove(const char *path);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Linked into the programs of OUT/faults, never into those that people run: makes one call of a
-// library fail. Every call of calls.def that the project's own code makes comes here first
-// (--wrap of the linker); calls within libraries and drivers do not.
+// Linked into the programs of OUT/faults, never into those that people run: makes chosen library
+// calls fail. Every call of a function of calls.def by the project's own code arrives here first
+// (the linker's --wrap); calls within libraries and drivers do not.
 //
 //   TRACTRIX_FAULT        NAME: every call of that name fails; NAME:N: the Nth; NAME@SITE:N: the
-//                         Nth of that call site. Several with commas between them.
+//                         Nth of that call site. Several, separated by commas.
 //   TRACTRIX_FAULT_LOG    a file: without TRACTRIX_FAULT it gets a line `NAME SITE` for each call,
 //                         with it a line `NAME REASON` for each call that was made to fail
 //   TRACTRIX_FAULT_DEPTH  how many callers make a site (default 4)
@@ -35,7 +35,7 @@
 
 enum { SITES = 1 << 16, FRAMES = 32, WISHES = 8, LOG_LOWEST = 200 };
 
-// Times that a site, or a name, was called.
+// Number of calls of a site or name.
 typedef struct Counter {
     uint64_t key;
     unsigned calls;
@@ -44,7 +44,7 @@ typedef struct Counter {
 typedef struct Wish {
     char name[64];
     uint64_t site;  // 0: any
-    unsigned which; // 0: every one
+    unsigned which; // 0: every call
 } Wish;
 
 extern const char __executable_start, etext; // the linker's
@@ -82,8 +82,8 @@ static uint64_t hash_name(const char *name)
     return hash | 1;
 }
 
-// The callers that lie in the program itself: addresses in libraries differ from run to run.
-// noinline: the first two frames are this function's and its caller's.
+// Hashes the callers that lie in the program itself, since addresses in libraries differ from run
+// to run. noinline: the first two frames are this function's and its caller's.
 static __attribute__((noinline)) uint64_t hash_callers(uint64_t hash)
 {
     void *frames[FRAMES];
@@ -117,7 +117,7 @@ static bool is_wished(const char *name, uint64_t site, unsigned of_name, unsigne
     return false;
 }
 
-// Names that nobody wishes to fail need no count.
+// Whether calls of this name need counting: some fault names it.
 static bool matters(const char *name)
 {
     bool named = wish_count == 0;
@@ -125,7 +125,7 @@ static bool matters(const char *name)
     return named;
 }
 
-// Whether this call shall fail. Counts it.
+// Counts this call; returns whether it must fail.
 static __attribute__((noinline)) bool chosen(const char *name, const char *reason)
 {
     if (log_file < 0 || busy || !matters(name)) return false;
@@ -160,7 +160,7 @@ static __attribute__((constructor)) void start(void)
     const char *wanted = getenv("TRACTRIX_FAULT"), *path = getenv("TRACTRIX_FAULT_LOG");
     const char *count = getenv("TRACTRIX_FAULT_DEPTH");
     if (!path) return;
-    backtrace(&frame, 1); // loads the unwinder, which takes memory
+    backtrace(&frame, 1); // loads the unwinder, which allocates memory
     if (count) callers = atoi(count);
     char text[1024];
     snprintf(text, sizeof text, "%s", wanted ? wanted : "");
@@ -171,9 +171,9 @@ static __attribute__((constructor)) void start(void)
     __real_close(file);
 }
 
-// --- Ways to fail.
+// --- Kinds of failures.
 
-// Everything that is written to the file from now on meets a full disk.
+// From now on, writing to this file fails as on a full disk.
 static void fill_disk(int file)
 {
     if (file < 0) return;
@@ -182,7 +182,7 @@ static void fill_disk(int file)
     __real_close(full);
 }
 
-// Everything that is read from the file from now on fails.
+// From now on, reading from this file fails.
 static void break_file(int file)
 {
     int flags = fcntl(file, F_GETFD), closed = __real_open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -255,12 +255,12 @@ static void fill_stream(const char *name, FILE *stream)
 #include "faults/calls.def"
 // clang-format on
 
-// --- Those with arguments of their own kind.
+// --- Functions that need more than the macro.
 
 extern int __real_fclose(FILE *stream);
 extern int __wrap_fclose(FILE *stream);
 
-// A stream in memory has no disk that could fail it.
+// A stream in memory has no file and can't fail to close.
 int __wrap_fclose(FILE *stream)
 {
     bool has_file = fileno(stream) >= 0;
@@ -286,8 +286,9 @@ int __wrap_asprintf(char **text, const char *format, ...)
 extern void *__wrap_malloc(size_t size);
 extern void __real_json_get_alloc_funcs(json_malloc_t *allocates, json_free_t *releases);
 
-// jansson's malloc never comes here: named as the project's, json.c takes it for the one to replace
-// by its own, which comes here.
+// jansson's own calls of malloc are not wrapped. If jansson uses malloc, this reports the wrapper
+// instead, so that json.c, which compares with its own malloc, replaces it by the project's
+// allocator, whose calls are wrapped.
 void __wrap_json_get_alloc_funcs(json_malloc_t *allocates, json_free_t *releases)
 {
     __real_json_get_alloc_funcs(allocates, releases);
@@ -376,7 +377,7 @@ int __wrap_printf(const char *format, ...)
     return length;
 }
 
-// --- OpenGL's questions after the fact.
+// --- OpenGL's queries of success.
 
 extern void (*__real_epoxy_glGetShaderiv)(GLuint shader, GLenum name, GLint *value);
 static void fail_glGetShaderiv(GLuint shader, GLenum name, GLint *value)

@@ -18,7 +18,7 @@ typedef struct Kills {
     const TortureOptions *options;
     Place place;
     Folder reference;
-    double seconds; // of an undisturbed run
+    double seconds; // of an uninterrupted run
 } Kills;
 
 static void run_undisturbed(Kills *kills)
@@ -41,8 +41,8 @@ static void run_undisturbed(Kills *kills)
     folder_read(&kills->reference, kills->place.run);
 }
 
-// After a signal that can be caught: it says so, or was done before. In the first milliseconds,
-// while libraries are loaded, no handler is there yet.
+// Judges the end by a signal that can be caught: the program must report it, unless it had
+// finished. In the first milliseconds, while libraries are loaded, no handler is installed.
 static const char *judge_interrupted(const Kills *kills, int signal, const ChildEnd *end,
                                      bool *late, char words[300])
 {
@@ -70,7 +70,7 @@ static const char *judge_killed(const Kills *kills, const ChildEnd *end, bool *l
                              *late ? FILES_WHOLE : FILES_KILLED, words);
 }
 
-// The same command again, undisturbed.
+// Runs the same command again without interruption.
 static const char *judge_resumed(const Kills *kills, char words[300])
 {
     ChildEnd end;
@@ -103,7 +103,7 @@ static void kill_once(Kills *kills, int which, double after_s, KillTally *tally)
               &end);
     const char *wrong = which == 0 ? judge_killed(kills, &end, &late, words)
                                    : judge_interrupted(kills, SIGNALS[which], &end, &late, words);
-    place_wait_left(&kills->place); // an ffmpeg ends a moment after the run that was killed
+    place_wait_left(&kills->place); // ffmpeg ends shortly after the killed run
     if (!wrong) wrong = judge_resumed(kills, words);
     ++tally->kills;
     ++tally->by[which];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Kills runs at random moments and lets them be resumed.
+// Kills runs at random moments and resumes them.
 #pragma once
 
 #include "faults/faults.h"
@@ -7,10 +7,11 @@
 typedef struct KillTally {
     int kills, wrong;
     int by[3]; // SIGKILL, SIGTERM, SIGINT
-    int late;  // of them: the run had ended before
+    int late;  // of the above: the run had finished before
 } KillTally;
 
-// Of every four kills two are by SIGKILL, one by SIGTERM and one by SIGINT. After a kill each file
-// is whole or absent, but for a cache; --resume (of a video: the same command again) gives the
-// bytes of an undisturbed run and removes what was left. Prints a line for each that does not.
+// Half of the kills are by SIGKILL, a quarter each by SIGTERM and SIGINT. After a kill, each file
+// except for a cache is complete or absent; --resume (or, for a video, the same command again)
+// produces the bytes of an uninterrupted run and removes leftovers. Prints a line for each
+// violation.
 void kills_run(const Run *run, const TortureOptions *options, KillTally *tally);

@@ -12,7 +12,6 @@
 #include <time.h>
 #include <unistd.h>
 
-// Room for the sanitizers' own files, which is none.
 void place_create(Place *place, const char *work, int number)
 {
     memset(place, 0, sizeof *place);
@@ -29,7 +28,7 @@ void place_run(const Place *place, const Run *run, const Attempt *attempt, Child
     char *words[RUN_WORDS];
     run_words(run, text, words);
     for (int i = 0; attempt->resumes && !run->one_piece; ++i) {
-        if (words[i] && strcmp(words[i], "--resume") == 0) break; // from its first run on
+        if (words[i] && strcmp(words[i], "--resume") == 0) break; // already in the run's arguments
         if (!words[i]) {
             words[i] = "--resume";
             words[i + 1] = NULL;
@@ -98,8 +97,8 @@ static bool may_be_partial(const Run *run, const char *name)
     return run->grows && (has_end(name, ".cache") || has_end(name, ".cache.state"));
 }
 
-// The same from the pixels on: the texts before them name the processor, which a run can do
-// without.
+// Whether files are equal from the pixels on: the texts before them name the processor, which a run
+// may fail to find out.
 static bool are_same_pixels(const FolderFile *a, const FolderFile *b)
 {
     const char *from = memmem(a->bytes, a->size, "IDAT", 4);
@@ -109,7 +108,8 @@ static bool are_same_pixels(const FolderFile *a, const FolderFile *b)
     return size && size == other && memcmp(from, at, size) == 0;
 }
 
-// Of a file with times in it: the same first byte, and it does not end in the middle of a line.
+// Whether files that contain times have the same first byte and the file does not end within a
+// line.
 static bool is_alike(const FolderFile *a, const FolderFile *b)
 {
     if (has_end(a->name, ".png")) return are_same_pixels(a, b);
@@ -117,8 +117,8 @@ static bool is_alike(const FolderFile *a, const FolderFile *b)
            a->bytes[a->size - 1] == b->bytes[b->size - 1];
 }
 
-// A record of frames (run/record.h) gets a line for each frame that is done; a line that was cut
-// short counts for none. Each other line must be one of an undisturbed run.
+// Whether the file is the beginning of a frame record (run/record.h), which has a line per finished
+// frame: each line is one of the uninterrupted run's, and a truncated last line is ignored.
 static bool is_record_begun(const FolderFile *wanted, const FolderFile *file)
 {
     const unsigned char *line = file->bytes, *end = line + file->size;
@@ -166,7 +166,7 @@ const char *place_judge_files(const Place *place, const Run *run, const Folder *
     return wrong;
 }
 
-// --- How it ended.
+// --- How a run ended.
 
 static int count_lines(const char *text)
 {
@@ -175,7 +175,7 @@ static int count_lines(const char *text)
     return lines;
 }
 
-// A line of an error: the program's name first, a reason last.
+// Checks an error line: the program's name first, a reason last.
 static const char *judge_line(const Run *run, const char *line, const char *reason)
 {
     char name[40];
@@ -191,12 +191,12 @@ static const char *judge_line(const Run *run, const char *line, const char *reas
     for (size_t i = 0; i < size; ++i)
         if (iscntrl((unsigned char)line[i])) return "a control character";
     if (strcasestr(line, reason)) return NULL;
-    // Memory has several names.
+    // There are several messages for lack of memory.
     bool memory = strcasestr(reason, "memory");
     return memory && strcasestr(line, "memory") ? NULL : "the line does not give the reason";
 }
 
-// tractrix-bench begins with a line that names the device.
+// Skips the first line of tractrix-bench, which names the device.
 static const char *skip_device(const Run *run, const char *errors)
 {
     const char *end = strchr(errors, '\n');

@@ -31,7 +31,7 @@ static int usage(const char *word)
     return 2;
 }
 
-// work/root: the project, which the harness is started in.
+// Links work/root to the project, the harness's working directory.
 static void link_root(const char *work)
 {
     char from[PATH_MAX], to[PATH_MAX + 8];

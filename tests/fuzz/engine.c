@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lets libFuzzer run the target that the environment's FUZZ_TARGET names, and holds the bounds of
+// Lets libFuzzer run the target named by the environment variable FUZZ_TARGET, with the limits of
 // time and memory that docs/reliability.md promises.
 #include "fuzz/fuzz.h"
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-// Sanitizers and the counting of branches take their share of the second.
+// SLOWER: sanitizers and branch counters slow the target down.
 enum { MEMORY_FACTOR = 64, MEMORY_BASE = 64 << 20, SLOWER = 8 };
 
 static atomic_llong held, most;

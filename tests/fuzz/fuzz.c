@@ -36,7 +36,7 @@ static void remove_folder(void)
     nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
 }
 
-// In memory where that can be, since every run may write a file.
+// In a memory file system if possible, since every run may write a file.
 static void make_folder(void)
 {
     const char *const places[] = {"/dev/shm", "/tmp"};

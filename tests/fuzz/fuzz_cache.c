@@ -33,7 +33,7 @@ void fuzz_cache(const Bytes *bytes, int unused)
     Error error = {{0}};
     bool matches = false;
     fuzz_claim(cache_file_matches(path, &matches, &error) == RESULT_OK, "%s", error.text);
-    if (!matches) return; // a hair file, or nothing
+    if (!matches) return; // a hair file, or no known format
     Result result = convert_input_open(&input, &error);
     fuzz_claim_error(result, &error);
     if (result == RESULT_OK) read_frames(&input);

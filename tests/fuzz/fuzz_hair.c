@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair files: what is read is sound, and what is written reads back the same.
+// Hair files: strands that were read are valid, and writing and reading them again gives the same.
 #include "fuzz/fuzz.h"
 #include "strands/formats/format.h"
 #include "strands/strands_read.h"
@@ -9,7 +9,7 @@
 
 void fuzz_hair(const Bytes *bytes, int kind);
 
-// What strands_read.h promises.
+// Checks what strands_read.h promises.
 static void claim_sound(const Strands *strands)
 {
     fuzz_claim(strands->strand_count >= 1, "no strand");
@@ -32,7 +32,7 @@ static bool is_same(const void *a, const void *b, size_t size)
     return !a == !b && (!a || memcmp(a, b, size) == 0);
 }
 
-// Numbers that are equal: -0 may be written as 0.
+// Whether numbers are equal; -0 may be written as 0.
 static bool are_equal(const float *a, const float *b, size_t count)
 {
     for (size_t i = 0; i < count; ++i)
@@ -57,7 +57,7 @@ static void claim_reads_back(const Strands *strands, FormatKind kind)
     const char *path = fuzz_path("again");
     Result result = format_write(path, kind, strands, &error);
     fuzz_claim_error(result, &error);
-    if (result != RESULT_OK) return; // strands that this format cannot hold
+    if (result != RESULT_OK) return; // this format can't hold the strands
     Strands again = {0};
     const StrandsReadOptions options = {.unit = 1, .up = UP_Y};
     result = strands_read(&again, path, &options, NULL, &error);
@@ -71,7 +71,7 @@ void fuzz_hair(const Bytes *bytes, int kind)
     Bytes copy = *bytes;
     if (kind == FORMAT_NPZ) fuzz_repair_zip(&copy);
     FormatKind found = format_detect(&copy);
-    if (found != FORMAT_KINDS && found != (FormatKind)kind) return; // another target's
+    if (found != FORMAT_KINDS && found != (FormatKind)kind) return; // tested by another target
     Strands strands = {0};
     StrandsFrames frames = {0};
     Error error = {{0}};

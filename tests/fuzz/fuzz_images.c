@@ -75,8 +75,8 @@ void fuzz_pfm(const Bytes *bytes, int unused)
     bytes_destroy(&again);
 }
 
-// Blocks of written files have 16 rows: of one that is much wider than high, the library takes more
-// memory than such a small file may ask for.
+// Written files have blocks of 16 rows. For an image much wider than high, the library needs more
+// memory than such a small file may cause.
 enum { WIDEST_WRITTEN = 65536 };
 
 void fuzz_exr(const Bytes *bytes, int unused)

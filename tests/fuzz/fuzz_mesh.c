@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes of Wavefront OBJ and PLY, and meshes over time of Alembic and USD.
+// Meshes of Wavefront OBJ and PLY, and animated meshes of Alembic and USD.
 #include "fuzz/fuzz.h"
 #include "mesh/mesh_read.h"
 #include "mesh/mesh_sequence.h"

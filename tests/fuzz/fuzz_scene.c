@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files and command lines. What a scene says of itself is a scene file again that says the
-// same.
+// Scene files and command lines. Writing a scene gives a scene file with the same contents.
 #include "fuzz/fuzz.h"
 #include "scene/scene.h"
 
@@ -16,7 +15,7 @@ static char *describe(const Scene *scene)
     char *text =
         value ? json_dumps(value, JSON_INDENT(1) | JSON_SORT_KEYS | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(value);
-    if (!text) abort(); // no memory
+    if (!text) abort(); // out of memory
     return text;
 }
 
@@ -46,8 +45,7 @@ void fuzz_scene(const Bytes *bytes, int unused)
     scene_destroy(&scene);
 }
 
-// Arguments stand on lines of their own. Those that could name a file outside of the test's are
-// left out.
+// One argument per line. Arguments that could name a file outside the test's folder are left out.
 void fuzz_arguments(const Bytes *bytes, int unused)
 {
     enum { MOST = 64 };

@@ -31,7 +31,7 @@ void fuzz_csv(const Bytes *bytes, int unused)
 void fuzz_formula(const Bytes *bytes, int unused)
 {
     (void)unused;
-    if (memchr(bytes->data, 0, bytes->size)) return; // no text
+    if (memchr(bytes->data, 0, bytes->size)) return; // not text
     Formula formula = {0};
     Error error = {{0}};
     Result result = formula_create(&formula, (const char *)bytes->data, &error);

@@ -20,7 +20,7 @@ static void put_little32(uint8_t *at, uint32_t value)
     for (int i = 0; i < 4; ++i) at[i] = (uint8_t)(value >> 8 * i);
 }
 
-// Chunks of length, type, data and CRC, behind 8 bytes (ISO/IEC 15948, 5.3).
+// Chunks of length, type, data and CRC after 8 bytes (ISO/IEC 15948, 5.3).
 void fuzz_repair_png(Bytes *bytes)
 {
     for (size_t at = 8; at + 12 <= bytes->size;) {
@@ -33,7 +33,7 @@ void fuzz_repair_png(Bytes *bytes)
     }
 }
 
-// Entries of the central directory and the local headers that they name (APPNOTE 4.3).
+// Entries of the central directory and their local headers (APPNOTE 4.3).
 void fuzz_repair_zip(Bytes *bytes)
 {
     enum { CENTRAL = 46, LOCAL = 30 };

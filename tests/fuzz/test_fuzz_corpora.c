@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every input of the fuzzer's corpora, and every input that ever broke a promise, goes through its
-// target. A corpus is a file of inputs, each behind its size (4 bytes, little-endian).
+// Runs every input of the fuzzer's corpora, and every input that once broke a promise, through its
+// target. A corpus is a file of inputs, each after its size (4 bytes, little-endian).
 #include "fuzz/fuzz.h"
 
 #include <dirent.h>
@@ -45,7 +45,7 @@ static int replay_failed(const FuzzTarget *target)
         Error error = {{0}};
         snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
         if (bytes_read_file(&bytes, path, &error) != RESULT_OK) fail_msg("%s", error.text);
-        puts(path); // what a crash leaves on the screen
+        puts(path); // remains on the screen after a crash
         fflush(stdout);
         fuzz_run(target, bytes.data, bytes.size);
         bytes_destroy(&bytes);

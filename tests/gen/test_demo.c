@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bundled haircuts sit on the bundled head as scripts/make-assets has grown them: roots on the
-// skull, nothing inside, the face free.
+// The bundled haircuts fit the bundled head as scripts/make-assets grew them: roots lie on the
+// skull, nothing is inside, and the face is free.
 #include "mesh/mesh_read.h"
 #include "mesh/surface.h"
 #include "strands/strands_read.h"
@@ -35,8 +35,9 @@ static void destroy_haircut(Haircut *haircut)
 
 static const char *const PATHS[] = {"assets/demo.tfx", "assets/bob.tfx"};
 
-// Roots are lifted by 0.1 mm along the smooth normal, which may lean to the facet: at least half of
-// that is left. All other vertices keep that distance, but for the rounding of the file's floats.
+// Roots are lifted by 0.1 mm along the interpolated normal, which may lean towards the facet, so
+// that at least half of the height is left. All other vertices keep that distance, except for the
+// rounding of the file's floats.
 static void roots_are_on_the_head_and_nothing_is_inside(void **state)
 {
     (void)state;
@@ -57,7 +58,7 @@ static void roots_are_on_the_head_and_nothing_is_inside(void **state)
     }
 }
 
-// A cone from inside the skull that leaves it around eyes, nose and mouth.
+// Checks a cone from inside the skull that leaves it around eyes, nose and mouth.
 static void the_face_is_free(void **state)
 {
     (void)state;

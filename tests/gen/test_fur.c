@@ -24,7 +24,7 @@ static Strands grow(const FurRecipe *recipe, const Mesh *mesh)
     return strands;
 }
 
-// Long hair on the head: everything at once.
+// Long hair on the head with all features.
 static FurRecipe long_hair(void)
 {
     FurRecipe recipe = fur_recipe_default();
@@ -47,8 +47,8 @@ static FurRecipe long_hair(void)
     return recipe;
 }
 
-// Coordinates of 0.3 m are rounded to 2^-25: two ends of each of n segments are off by sqrt(3)
-// 2^-26 m at most, n times as much over the strand.
+// Coordinates of 0.3 m are rounded to 2^-25: both ends of each of n segments err by sqrt(3) 2^-26 m
+// at most, and the strand by n times as much.
 static void check_lengths(const Strands *strands, double shortest, double longest)
 {
     double slack = strands_size(strands, 0) * 2 * sqrt(3.0) * 0x1p-26;
@@ -69,7 +69,7 @@ static void lengths_are_within_the_variation(void **state)
     check_lengths(&strands, 0.6 * recipe.length, recipe.length);
     double sum = 0;
     for (uint32_t s = 0; s < strands.strand_count; s++) sum += strands_length(&strands, s);
-    // Even between the two: a deviation of 0.4/sqrt(12) of the length.
+    // Lengths are uniform between the two: their standard deviation is 0.4/sqrt(12) of the length.
     double mean = sum / strands.strand_count / recipe.length;
     assert_true(fabs(mean - 0.8) < 5 * 0.4 / sqrt(12.0 * strands.strand_count));
     strands_destroy(&strands);
@@ -87,8 +87,8 @@ static void lengths_are_within_the_variation(void **state)
     strands_destroy(&strands);
 }
 
-// Vertices and the middles between them, but for the rounding of the file's numbers. The root is
-// lifted along the smooth normal, which may lean to the facet.
+// Vertices and segments' middles are outside, except for the rounding of the file's numbers. The
+// root is lifted along the interpolated normal, which may lean towards the facet.
 static void check_outside(const Strands *strands, const Surface *surface, double least)
 {
     SurfacePoint nearest = {0};
@@ -105,7 +105,7 @@ static void check_outside(const Strands *strands, const Surface *surface, double
         }
 }
 
-// Hair that is blown against the head from the front and hangs by much weight, curly or not: the
+// Hair that is blown against the head from the front and hangs with great weight, curly or not:
 // nose, lips and chin are in its way.
 static void hair_stays_out_of_the_mesh(void **state)
 {
@@ -141,7 +141,7 @@ static void equal_seeds_give_equal_hair(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// How far the tips are from the nearest tip of a guide, in the mean, m. Guides come first.
+// Mean distance of the tips from the nearest guide's tip, m. Guides come first.
 static double measure_clumps(const Strands *strands, uint32_t guides)
 {
     double sum = 0;
@@ -158,9 +158,10 @@ static double measure_clumps(const Strands *strands, uint32_t guides)
     return sum / (strands->strand_count - guides);
 }
 
-// Straight fur on a sphere, all of one length: tips lie on a larger sphere, around those of guides.
-// What is drawn by 0.8 of the way to them is left with 0.2 of the distance, some 12 mm in the mean,
-// and, since it keeps its length, ends lower: by 12^2/200 mm, which makes it 0.21.
+// Straight fur of equal length on a sphere: all tips, including the guides', lie on a larger
+// sphere. A strand that is pulled by 0.8 of the way to its guide keeps 0.2 of the distance, which
+// is 12 mm on average. As it keeps its length, its tip is lower by 12^2/200 mm, so that 0.21
+// remains.
 static void clumps_gather_tips(void **state)
 {
     (void)state;
@@ -182,11 +183,11 @@ static void clumps_gather_tips(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// Combed down without lift on a sphere: the first segment is along the surface and down; with 90
-// degrees it is along the normal. Normals of the mesh are means of facets', whose normals are
-// within half of their diagonal, 2.5 sqrt(2) degrees = 0.062, of the sphere's. Facets lie up to 0.1
-// (1 - cos 2.5 deg) m = 0.1 mm below it: an edge in the way turns a segment of 2 mm up by 0.1, and
-// 2 % more (fur_weave_cut).
+// Combed down without lift on a sphere, the first segment runs downwards along the surface; with a
+// lift of 90 degrees, it runs along the normal. The mesh's normals are means of facets' normals,
+// which differ from the sphere's by up to half of the facet's diagonal, 2.5 sqrt(2) degrees =
+// 0.062. Facets lie up to 0.1 (1 - cos 2.5 deg) m = 0.1 mm below the sphere: an edge in the way
+// turns a segment of 2 mm up by 0.1, and by 2 % more (fur_weave_cut).
 static void hair_leaves_as_it_is_combed(void **state)
 {
     (void)state;
@@ -210,7 +211,8 @@ static void hair_leaves_as_it_is_combed(void **state)
             double3_copy(root, normal);
             double3_normalize(normal);
             double along = double3_dot(next, normal), most = 0.164;
-            // At 0.03 of 0.1 m down is within asin(0.3) of straight down.
+            // At a height of 0.03 on a radius of 0.1 m, down along the surface is within asin(0.3)
+            // of vertical.
             double down = -cos(asin(0.3) + most);
             assert_true(upright ? along > cos(0.062) : fabs(along) < most && next[1] < down);
         }
@@ -219,7 +221,7 @@ static void hair_leaves_as_it_is_combed(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// An image that says u everywhere: along the circles of latitude, turned up by at most 0.1 as
+// An image that says u everywhere combs along the circles of latitude, turned up by at most 0.1 as
 // above.
 static void images_comb_along_texture_coordinates(void **state)
 {
@@ -251,9 +253,7 @@ static void images_comb_along_texture_coordinates(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// Curls without a common phase: in the half of a strand where they have their full radius, 0.8 to
-// 1.2 of 4 mm, a strand keeps turning: over each quarter turn (there are 8 segments a turn, some
-// more on the curl's longer way) its direction changes.
+// Curled strands are shorter from root to tip by the curl's longer way.
 static void curls_wind(void **state)
 {
     (void)state;
@@ -276,8 +276,8 @@ static void curls_wind(void **state)
             double3_from_float(strands.position[strands.first[s + 1] - 1], tip);
             reach += double3_distance(root, tip) / recipe.length / strands.strand_count;
         }
-        // A helix of radius r and f turns a metre of its axis is sqrt(1 + (2 pi f r)^2) = 2.02 long
-        // a metre; r grows over the first half, where it is 1.3 in the mean.
+        // A helix of radius r and f turns per metre has a length of sqrt(1 + (2 pi f r)^2) = 2.02
+        // per metre of its axis; r grows over the first half of the strand, where the mean is 1.3.
         assert_true(curls ? reach > 1 / 2.02 && reach < 1 / 1.3 : reach > 0.9999);
         strands_destroy(&strands);
     }

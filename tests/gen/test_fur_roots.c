@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Roots of fur: even over the surface, apart from each other, as dense as a map says.
+// Roots of fur are evenly spread over the surface, keep apart from each other, and follow a density
+// map.
 #include "base/random.h"
 #include "gen/fur_roots.h"
 #include "image/png.h"
@@ -25,10 +26,10 @@ static void make_roots(SurfacePoint *roots, uint32_t count, const Scalp *scalp, 
     fur_map_destroy(&map);
 }
 
-// 60 groups of the head's triangles, in their order. Random points by area have a chi-square of
-// mean 59 and deviation sqrt(2 x 59) = 10.9; points that keep away from each other have less, else
-// they would not be evener than random. Bound: where random ones are only once in 400 times, 2.8
-// deviations below their mean. (Triangles picked without regard to their area: 92.)
+// The head's triangles in 60 groups of successive triangles. For random points, chi-square has the
+// mean 59 and the standard deviation sqrt(2 x 59) = 10.9. Points that keep apart have less, as they
+// are more even. The bound, 2.8 standard deviations below the mean, is reached by random points
+// only once in 400 times. (If triangles were picked without regard to their area: 92.)
 static void roots_are_even_by_area(void **state)
 {
     (void)state;
@@ -52,8 +53,8 @@ static void roots_are_even_by_area(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// Within a triangle: of even points (x, y) with x, y >= 0, x + y <= 1 half lie within each of
-// x + y < sqrt(1/2), |x - y| ... by symmetry x < y. Deviations of n points: sqrt(n)/2.
+// Uniform points (x, y) of the triangle x, y >= 0, x + y <= 1: half of them have x + y < sqrt(1/2),
+// and by symmetry half have x < y. The standard deviation of the count of n points is sqrt(n)/2.
 static void roots_are_even_within_a_triangle(void **state)
 {
     (void)state;
@@ -79,7 +80,8 @@ static void roots_are_even_within_a_triangle(void **state)
     mesh_destroy(&mesh);
 }
 
-// The closest two of `count` roots, over the distance of a hexagonal lattice of as many.
+// The distance of the closest two of `count` roots, relative to the spacing of a hexagonal lattice
+// of as many points.
 static double find_closest(const SurfacePoint *roots, uint32_t count, double area)
 {
     double closest = INFINITY;
@@ -89,9 +91,9 @@ static double find_closest(const SurfacePoint *roots, uint32_t count, double are
     return closest / sqrt(2 / sqrt(3.0) * area / count);
 }
 
-// Of random points the closest two of n are some 1/n of the width apart: a share of 1/sqrt(n), 0.03
-// here. Yuksel (2015) has 0.7 and more with four candidates each; a quarter of the roots, picked
-// from so few, is a little less even.
+// The closest two of n random points are about 1/n of the width apart: 1/sqrt(n) of the spacing,
+// 0.03 here. Yuksel (2015) reaches 0.7 and more with four candidates per point; the first quarter,
+// chosen from so few candidates, is slightly less even.
 static void roots_keep_away_from_each_other(void **state)
 {
     (void)state;
@@ -106,8 +108,8 @@ static void roots_keep_away_from_each_other(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// A fifth as dense on one half of a sphere: a sixth of the roots, within five deviations of random
-// ones; none where the density is 0 or below.
+// The density is a fifth on one half of a sphere: a sixth of the roots lie there, within five
+// standard deviations of random points, and none where the density is 0 or below.
 static void roots_are_as_dense_as_the_map_says(void **state)
 {
     (void)state;
@@ -124,8 +126,8 @@ static void roots_are_as_dense_as_the_map_says(void **state)
     shapes_destroy_scalp(&scalp);
 }
 
-// White where u is between 0.25 and 0.75: the front half of the sphere. A texel's value reaches
-// into its neighbours.
+// White where u is between 0.25 and 0.75: the front half of the sphere. Interpolation extends a
+// texel's value into its neighbours.
 static void images_lie_on_texture_coordinates(void **state)
 {
     enum { SIZE = 64, COUNT = 500 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair of tractrix-gen's own kinds, and the random numbers behind it.
+// Hair of tractrix-gen's generated kinds, and its random numbers.
 #include "base/random.h"
 #include "gen/strands_make.h"
 #include "strands/strands_read.h"
@@ -64,8 +64,8 @@ static void unknown_sets_are_refused_with_the_list(void **state)
     assert_non_null(strstr(error.text, "expected 1k16, 1k32, 10k16 or 10k32"));
 }
 
-// For n even directions each coordinate's mean has the standard deviation 1/sqrt(3 n), its mean
-// square 2/(3 sqrt(5 n)): 15,000 segments, five deviations.
+// For n uniform directions, the mean of a coordinate has the standard deviation 1/sqrt(3 n), and
+// the mean of its square 2/(3 sqrt(5 n)): 15,000 segments, five standard deviations.
 static void directions_of_random_segments_are_even(void **state)
 {
     (void)state;
@@ -105,7 +105,7 @@ static void equal_seeds_give_equal_strands_and_others_do_not(void **state)
     }
 }
 
-// How far a point is outside the surface, metres.
+// Height of a point above the surface, m.
 static double height_over(ScalpShape shape, const float point[3])
 {
     Double3 at;
@@ -136,8 +136,8 @@ static void every_style_grows_from_the_surface_to_its_length(void **state)
     }
 }
 
-// A vertex may dip below the surface by what a segment's chord cuts off: l^2 / (8 r), with l 13 mm
-// and r 50 mm some 0.4 mm, and a little more where the vertex is pulled back to its length.
+// A vertex may lie below the surface by the height of a segment's chord, l^2 / (8 r): about 0.4 mm
+// for l = 13 mm and r = 50 mm, and slightly more where the vertex is pulled back to its length.
 static void hair_stays_out_of_the_head(void **state)
 {
     (void)state;
@@ -151,8 +151,8 @@ static void hair_stays_out_of_the_head(void **state)
     }
 }
 
-// Octants of the sphere hold equal shares, of all roots and of the first tenth alike; a
-// low-discrepancy set of n is off by far less than the 3 sqrt(n) of random points.
+// Octants of the sphere have equal shares of all roots and of the first tenth; the counts of a
+// low-discrepancy set of n points err far less than the 3 sqrt(n) of random points.
 static void roots_are_even_from_the_first_on(void **state)
 {
     (void)state;

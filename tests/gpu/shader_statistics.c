@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What Mesa's compiler for AMD's GPUs makes of compute shaders, without such a GPU: RADV's null
+// Statistics of compute shaders by Mesa's compiler for AMD GPUs, without such a GPU: RADV's null
 // device (RADV_FORCE_FAMILY) compiles as for a real one, and VK_KHR_pipeline_executable_properties
-// tells registers, scratch memory and waves. scripts/gpu-statistics builds and runs it.
+// reports registers, scratch memory and waves. scripts/gpu-statistics builds and runs it.
 //
 // usage: shader_statistics FILE.spv...
-// Prints the device's name, then for each file its name and NAME=VALUE of every statistic, in
-// columns between tabs; "refused" where the driver makes no pipeline of it. Status 1 if any was
+// Prints the device's name, then for each file its name and NAME=VALUE of every statistic,
+// separated by tabs; "refused" if the driver can't create a pipeline of it. Status 1 if any was
 // refused, 3 without such a device.
 #include <vulkan/vulkan.h>
 
@@ -16,7 +16,7 @@
 
 enum { MOST_BINDINGS = 64, MOST_STATISTICS = 64, MOST_DEVICES = 16, NO_DEVICE = 3 };
 
-// Numbers of SPIR-V 1.0: operations, decorations, classes of storage.
+// SPIR-V 1.0: operations, decorations, storage classes.
 enum {
     OP_TYPE_IMAGE = 25,
     OP_TYPE_SAMPLED_IMAGE = 27,
@@ -36,7 +36,7 @@ typedef struct Module {
     size_t count; // of words
 } Module;
 
-// What a module says of one of its ids; 0 where it says nothing.
+// What a module says about one of its ids; 0 if nothing.
 typedef struct Id {
     uint32_t pointee, image; // ids: what a pointer points to; the image of a sampled image
     uint32_t binding;
@@ -92,8 +92,8 @@ static VkDescriptorType type_of(const Id *ids, uint32_t type, uint32_t storage)
                                            : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
 
-// The bindings of a module that glslangValidator has written, so it is taken to be sound. Returns
-// how many; -1 where they are too many or memory is short.
+// Finds the bindings of a module by glslangValidator, which is assumed to be valid. Returns their
+// count; -1 if there are too many or memory is short.
 static int find_bindings(const Module *module, VkDescriptorSetLayoutBinding *bindings)
 {
     Id *ids = calloc(module->words[3], sizeof *ids); // words[3]: the bound of ids
@@ -143,7 +143,7 @@ static VkResult create_device(Driver *driver, VkPhysicalDevice physical)
     return vkCreateDevice(physical, &info, NULL, &driver->device);
 }
 
-// The device that RADV_FORCE_FAMILY asks for, by its name; VK_NULL_HANDLE without it.
+// The device that RADV_FORCE_FAMILY selects, by its name; VK_NULL_HANDLE if there is none.
 static VkPhysicalDevice find_device(VkInstance instance)
 {
     VkPhysicalDevice devices[MOST_DEVICES];
@@ -218,7 +218,7 @@ static VkPipeline create_pipeline(VkDevice device, const Module *module)
     return pipeline;
 }
 
-// Lanes of a wave.
+// Lanes per wave.
 static uint32_t wave_size(const Driver *driver, VkPipeline pipeline)
 {
     const VkPipelineInfoKHR info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR,
@@ -230,7 +230,7 @@ static uint32_t wave_size(const Driver *driver, VkPipeline pipeline)
     return result >= 0 && count == 1 ? properties.subgroupSize : 0;
 }
 
-// Objects live to the end of the process, which is short.
+// Objects are never destroyed: the process is short-lived.
 static bool print_statistics(const Driver *driver, const char *path)
 {
     Module module;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each kind of state of a host's context that drawing relies on is named where it is not the
-// default, and nothing is changed by asking.
+// The check of a host's context names each kind of state that drawing relies on if it is not the
+// default, and the check changes nothing.
 #include "gpu/gl_defaults.h"
 #include "support/hair_fixture.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Equal GPUs are told apart, by what the system says of them; a GPU that cannot be used is
-// explained. No GPU is needed: the system's folders are imitated.
+// Equal GPUs are told apart by the system's data, and messages explain why a GPU can't be used. No
+// GPU is needed: the test imitates the system's folders.
 #include "gpu/gpu_device.h"
 #include "support/temporary.h"
 
@@ -34,7 +34,7 @@ static void a_node_has_the_address_of_its_pci_device(void **state)
     const char *sys = temporary_path(state, ".");
     assert_true(gpu_device_find_pci(sys, 226, 128, pci));
     assert_string_equal(pci, "0000:c1:00.0");
-    assert_false(gpu_device_find_pci(sys, 226, 64, pci)); // no PCI device: of a board
+    assert_false(gpu_device_find_pci(sys, 226, 64, pci)); // not a PCI device but part of a board
     assert_false(gpu_device_find_pci(sys, 1, 1, pci));
 }
 
@@ -67,7 +67,7 @@ static void a_device_is_named_by_what_its_list_shows(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
         if (gpu_device_is(cases[i].name, 1, renderer, vendor, &identity) != cases[i].meant)
             fail_msg("%s", cases[i].name);
-    // What is not known is nobody's.
+    // Unknown data matches no GPU.
     assert_false(gpu_device_is("c1:00.0", 1, renderer, vendor, &(GpuIdentity){0}));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Any number of items is worked on, each once, however few groups a driver allows side by side; and
-// a GL error is told with the pass that made it.
+// Every item is processed exactly once, however few groups per dimension a driver allows; and a GL
+// error is reported with the pass that caused it.
 #include "gpu/gpu_buffer.h"
 #include "gpu/gpu_dispatch.h"
 #include "gpu/gpu_timer.h"
@@ -24,7 +24,7 @@ static int open_gpu(void **state)
     return 0;
 }
 
-// Runs probe_lanes.comp, which adds 1 to visits[layer][lane] of `count` lanes and layer.
+// Runs probe_lanes.comp, which adds 1 to visits[layer][lane] of `count` lanes and `layers` layers.
 static uint32_t *run_lanes(int most_groups, uint32_t count, uint32_t layers)
 {
     GLuint program;

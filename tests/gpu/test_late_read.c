@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bytes that come back from the GPU late are those of the moment at which they were asked for,
-// whole and in their places, however often the same room is used.
+// Bytes that are read back late are those of the moment of the request, complete and at their
+// places, even if the buffer is reused.
 #include "gpu/gpu_buffer.h"
 #include "gpu/gpu_dispatch.h"
 #include "gpu/late_read.h"
@@ -63,7 +63,7 @@ static void what_is_written_behind_the_copy_does_not_count(void **state)
     const uint32_t *bytes = open_read(&read);
     for (int i = 0; i < WORDS; ++i) assert_int_equal(bytes[i], 7);
     late_read_close(&read);
-    // The room again, before which other bytes were there.
+    // The same buffer, which contained other bytes before.
     begin(&read, 4 * WORDS);
     late_read_buffer(&read, 0, &words, 4 * WORDS);
     late_read_send(&read);
@@ -87,7 +87,7 @@ static void several_buffers_lie_where_they_were_put(void **state)
     const uint32_t *bytes = open_read(&read);
     for (int i = 0; i < 100; ++i) assert_int_equal(bytes[i], i < 10 ? 1 : i < 70 ? 2 : 3);
     late_read_close(&read);
-    // More room than before, less than before, and what was asked for and never looked at.
+    // A larger buffer, a smaller one, and a request whose result is never read.
     for (int i = 0; i < 6; ++i) {
         int count = i % 2 ? 50 : 2000 + i;
         begin(&read, 4 * (int64_t)count);
@@ -103,7 +103,7 @@ static void several_buffers_lie_where_they_were_put(void **state)
     gpu_buffer_destroy(&a), gpu_buffer_destroy(&b), gpu_buffer_destroy(&c);
 }
 
-// Shaders' stores arrive in the copy: probe_lanes.comp adds 1 to each word.
+// Writes of shaders arrive in the copy: probe_lanes.comp adds 1 to each word.
 static void what_shaders_have_stored_arrives(void **state)
 {
     (void)state;
@@ -131,7 +131,7 @@ static void what_shaders_have_stored_arrives(void **state)
     shader_release(program);
 }
 
-// Pixels from the lower left on, of a framebuffer of which each quarter has its own colour.
+// Pixels start at the lower left; each quarter of the framebuffer has its own colour.
 static void pixels_come_as_they_were_drawn(void **state)
 {
     (void)state;

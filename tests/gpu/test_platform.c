@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The name of what draws tells apart what rounds otherwise, and nothing else.
+// The platform's name differs where rounding differs, and is equal otherwise.
 #include "gpu/platform.h"
 
 #include <setjmp.h>
