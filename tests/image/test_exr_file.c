@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// EXR files: what is written is read back, also by OpenEXR's own tools where they are; files of
-// other makers, which are made here by the library; and damaged ones.
+// EXR files: written files can be read back, also by OpenEXR's own tools if they are installed;
+// files as other programs write them, which the test makes with the library; and damaged files.
 #include "image/exr_file.h"
 #include "image/float_image.h"
 #include "support/temporary.h"
@@ -17,7 +17,7 @@
 
 #include <cmocka.h>
 
-enum { WIDTH = 37, HEIGHT = 21, PIXELS = WIDTH * HEIGHT }; // no multiple of a block's 16 rows
+enum { WIDTH = 37, HEIGHT = 21, PIXELS = WIDTH * HEIGHT }; // not a multiple of a block's 16 rows
 
 static Image make_image(int channels)
 {
@@ -34,7 +34,8 @@ static const float *floats(const Image *image)
     return (const float *)(const void *)image->pixels;
 }
 
-// What --aov would draw: a strand of each pixel's own in the left half, none in the right.
+// Layers as --aov draws them: a strand of its own in each pixel of the left half, and none in the
+// right half.
 static void make_layers(Image layers[EXR_LAYERS])
 {
     for (int l = 0; l < EXR_LAYERS; ++l) {
@@ -56,7 +57,7 @@ static void destroy_layers(Image layers[EXR_LAYERS])
     for (int l = 0; l < EXR_LAYERS; ++l) image_destroy(&layers[l]);
 }
 
-// A half has 11 bits.
+// A half float has 11 bits.
 static float rounded_to_half(float value)
 {
     int exponent;
@@ -91,7 +92,7 @@ static void images_survive_a_round_trip(void **state)
         }
 }
 
-// --- The library itself as the other side: reads and writes files in memory.
+// --- The OpenEXR library reads and writes files in memory.
 
 typedef struct Disk {
     uint8_t *data;
@@ -171,10 +172,10 @@ static void layers_are_channels_of_the_same_file(void **state)
     const ExrFile file = {.image = &image, .layers = layers};
     assert_int_equal(exr_file_encode(&file, &exr, NULL), RESULT_OK);
     read_channel(&exr, "Z", EXR_PIXEL_FLOAT, numbers);
-    assert_true(numbers[0] == 1.0f / 3 && numbers[WIDTH - 1] == 0); // not as a half
+    assert_true(numbers[0] == 1.0f / 3 && numbers[WIDTH - 1] == 0); // not a half float
     read_channel(&exr, "coverage", EXR_PIXEL_FLOAT, numbers);
     assert_true(numbers[0] == 0.25f && numbers[WIDTH - 1] == 0);
-    // (0.6, 0, 0.8) within half a step of a half
+    // (0.6, 0, 0.8) within half a step of a half float
     const float tangent[] = {0.6f, 0, 0.8f};
     static const char *const names[] = {"tangent.X", "tangent.Y", "tangent.Z"};
     for (int k = 0; k < 3; ++k) {
@@ -189,8 +190,8 @@ static void layers_are_channels_of_the_same_file(void **state)
     image_destroy(&image);
 }
 
-// A pixel has a strand if its depth, its tangent and its number are there: in each of the eight
-// cases of what is black. Coverage is as it was drawn.
+// A pixel has a strand if its depth, tangent and strand colour are all set: tests all eight
+// combinations of black layers. Coverage is kept as drawn.
 static void a_pixel_has_all_of_a_strand_or_nothing(void **state)
 {
     (void)state;
@@ -203,7 +204,7 @@ static void a_pixel_has_all_of_a_strand_or_nothing(void **state)
         for (int l = 0; l < EXR_LAYERS; ++l) {
             float *at = (float *)(void *)layers[l].pixels + 3 * i;
             for (int k = 0; k < 3; ++k) at[k] = l == EXR_COVERAGE ? 0.25f : 0.5f;
-            // One number that is not black is enough, whichever it is.
+            // One component other than black is enough, whichever it is.
             if (l == EXR_STRAND || l == EXR_TANGENT)
                 for (int k = 0; k < 3; ++k) at[k] = k == i / 8 % 3 ? 1.0f : 0;
             bool black = l != EXR_COVERAGE && i >> (l - EXR_DEPTH) & 1;
@@ -218,7 +219,7 @@ static void a_pixel_has_all_of_a_strand_or_nothing(void **state)
         bool strand = i % 8 == 0;
         assert_true(numbers[0][i] == (strand ? 0.5f : 0) && numbers[4][i] == 0.25f);
         assert_int_equal(ids[i], strand ? 0xffu << (8 * (i / 8 % 3)) : 0u);
-        float square = 0; // of a unit vector, or of none
+        float square = 0; // of a unit vector, or 0
         for (int k = 1; k < 4; ++k) square += numbers[k][i] * numbers[k][i];
         assert_true(strand ? fabsf(square - 1) < 1e-6f : square == 0);
     }
@@ -244,7 +245,8 @@ static void attributes_are_kept(void **state)
     assert_int_equal(exr_file_decode_texts(&found, &exr, "x.exr", NULL), RESULT_OK);
     assert_string_equal(image_texts_find(&found, "Software"), "tractrix");
     assert_string_equal(image_texts_find(&found, "A key of more than thirty-one letters"), "12");
-    assert_non_null(memmem(exr.data, exr.size, matrix, sizeof matrix)); // little-endian here
+    // little-endian on this machine
+    assert_non_null(memmem(exr.data, exr.size, matrix, sizeof matrix));
     assert_non_null(memmem(exr.data, exr.size, "worldToCamera\0m44f", 19));
     assert_non_null(memmem(exr.data, exr.size, "chromaticities", 14));
     image_texts_destroy(&texts), image_texts_destroy(&found);
@@ -252,17 +254,17 @@ static void attributes_are_kept(void **state)
     image_destroy(&image);
 }
 
-// --- Files of other makers.
+// --- Files of other programs.
 
 typedef struct Maker {
-    const char *names[5]; // in the order of files
+    const char *names[5]; // in the order of the file
     exr_pixel_type_t type;
     exr_compression_t compression;
     bool tiled;
     exr_attr_box2i_t data, shown;
 } Maker;
 
-// The channel c's number at x, y of the data's plane: halves, floats and integers hold it.
+// Channel c's value at x, y of the test data: exact in half floats, floats and integers.
 static float number_at(int c, int x, int y)
 {
     return (float)(8 * c + ((x + 48) / 4 + (y + 48) / 4) % 8);
@@ -332,7 +334,7 @@ static Bytes make_file(const Maker *maker)
     return (Bytes){disk.data, disk.size};
 }
 
-// `channels`: which of the maker's are R, G, B and A; -1: none.
+// `channels`: indices of the file's channels that are R, G, B and A; -1: none.
 static void assert_reads(const Maker *maker, const int channels[4])
 {
     Bytes file = make_file(maker);
@@ -372,7 +374,8 @@ static void all_kinds_of_files_are_read(void **state)
         for (int t = 0; t < 3; ++t)
             for (int tiled = 0; tiled < 2; ++tiled) {
                 bool b44 = ways[w] == EXR_COMPRESSION_B44 || ways[w] == EXR_COMPRESSION_B44A;
-                if (b44 && tiled) continue; // of partial tiles 3.1 writes what it does not read
+                // OpenEXR 3.1 can't read the partial tiles that it writes
+                if (b44 && tiled) continue;
                 assert_reads(&(Maker){.names = {"A", "B", "G", "R", "Z"},
                                       .type = types[t],
                                       .compression = ways[w],
@@ -446,7 +449,7 @@ static void what_is_not_a_colour_is_refused(void **state)
     image_destroy(&image);
 }
 
-// A display window that is far larger than the file can fill.
+// The display window is far larger than the file's contents could be.
 static void bombs_are_refused(void **state)
 {
     (void)state;
@@ -462,7 +465,7 @@ static void bombs_are_refused(void **state)
     bytes_destroy(&file);
 }
 
-// No damage ends the program, and each is one line.
+// Damaged files never end the program; each gives an error of one line.
 static void damaged_files_are_refused(void **state)
 {
     (void)state;
@@ -490,7 +493,7 @@ static void damaged_files_are_refused(void **state)
     image_destroy(&image);
 }
 
-// Premultiplied light over black stays as it is; over white comes what shines through.
+// Over black, premultiplied light stays as it is; over white, what shines through is added.
 static void alpha_is_laid_over_in_light(void **state)
 {
     (void)state;
@@ -508,7 +511,7 @@ static void alpha_is_laid_over_in_light(void **state)
     }
 }
 
-// OpenEXR's own programs, which are of C++ and share no code with the core.
+// OpenEXR's own programs, which are written in C++ and share no code with its C core.
 static void openexr_reads_our_files(void **state)
 {
     if (system("command -v exrheader >/dev/null && command -v exrmaketiled >/dev/null") != 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// JPEG files show nearly the same, by another reader; images that they cannot hold are refused.
+// Another reader sees almost the same image in a JPEG file; images that JPEG can't hold are
+// refused.
 #include "image/jpeg.h"
 
 #include "image/float_image.h"
@@ -25,7 +26,7 @@
 #include <stb_image.h>
 #pragma GCC diagnostic pop
 
-// Slopes, which lose next to nothing.
+// Gradients, which compress almost without loss.
 static Image make_slopes(int width, int height)
 {
     Image image;
@@ -65,7 +66,7 @@ static void a_picture_survives(void **state)
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
         Image image = make_slopes(sizes[i][0], sizes[i][1]);
         size_t fine, small;
-        // A level or so is lost to the conversion of colours alone.
+        // The conversion of colours alone loses about one level.
         assert_true(rms_of(&image, JPEG_FINE, &fine) < 2);
         assert_true(rms_of(&image, JPEG_SMALL, &small) < 4);
         if (i == 2) assert_true(small < fine && fine < image_size(&image) / 4);
@@ -96,7 +97,7 @@ static void it_is_not_measured(void **state)
     Image image = make_slopes(16, 16), back;
     Bytes file;
     Error error;
-    const char *path = temporary_path(state, "x.png"); // the content decides
+    const char *path = temporary_path(state, "x.png"); // the content decides, not the suffix
     assert_int_equal(jpeg_encode(&image, JPEG_FINE, &file, NULL), RESULT_OK);
     assert_int_equal(bytes_write_file(&file, path, NULL), RESULT_OK);
     assert_int_equal(float_image_read_image(&back, path, &error), RESULT_BAD_INPUT);

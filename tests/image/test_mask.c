@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Masks: what is ignored has no influence on any figure, and what is compared has all of it.
+// Masks: ignored pixels have no influence on any metric; all compared pixels have.
 #include "image/compare.h"
 #include "image/mask.h"
 #include "image/png.h"
@@ -17,7 +17,7 @@
 
 enum { W = 40, H = 30, PIXELS = W * H };
 
-// Numbers that look random, from a seed: Knuth's multiplier for 64 bits.
+// Pseudo-random numbers from a seed, by Knuth's multiplier for 64 bits.
 static unsigned noise(uint64_t seed, uint64_t i)
 {
     uint64_t x = (seed + 1) * 6364136223846793005U + i * 1442695040888963407U;
@@ -95,7 +95,7 @@ static void the_nearest_compared_pixel_is_the_nearest(void **state)
     }
 }
 
-// With and without alpha: to the last bit, as nothing else may enter.
+// With and without alpha; exactly equal, since ignored pixels must have no influence at all.
 static void what_is_ignored_changes_no_figure(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void what_is_ignored_changes_no_figure(void **state)
         }
 }
 
-// Images that agree wherever they are compared, and not by the short cut for equal ones.
+// Images that agree in all compared pixels. The shortcut for equal images does not apply.
 static void differences_that_are_ignored_score_exactly_0(void **state)
 {
     (void)state;
@@ -136,7 +136,7 @@ static void differences_that_are_ignored_score_exactly_0(void **state)
         assert_true(result.rmse == 0 && result.flip == 0 && result.flip_most == 0);
         assert_true(result.ssim == 1 && isinf(result.psnr));
         assert_false(compare(NULL, &a, &b, NULL).same);
-        // One compared pixel that differs by a level is enough.
+        // One compared pixel that differs by one level suffices.
         size_t last = 0;
         for (size_t i = 0; i < PIXELS; ++i)
             if (is_compared(shape, (int)i)) last = i;
@@ -173,8 +173,8 @@ static Image crop_left(const Image *image)
     return left;
 }
 
-// An ignored half is like none at all: beyond both lies the nearest pixel. Only SSIM's windows stay
-// within the image of either.
+// Masking a half equals cutting it off: in both cases, the nearest pixel continues the image.
+// SSIM's windows are the exception: they stay within the image.
 static void a_masked_half_is_as_good_as_cut_off(void **state)
 {
     (void)state;
@@ -200,7 +200,7 @@ static double luma_of(const Image *image, int i)
     return 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
 }
 
-// Another way: central moments of a window, pixel by pixel, from the definition.
+// Independent computation: central moments of a window, pixel by pixel, from the definition.
 static void find_index(double *index, double *share, const Image *a, const Image *b, Shape shape,
                        int x, int y)
 {
@@ -240,7 +240,7 @@ static void similarity_is_over_compared_pixels(void **state)
                 find_index(&index, &share, &a, &b, shape, x, y);
                 sum += share * index, shares += share;
             }
-        // Variances are up to 1e4 and come as differences of numbers of 6e4, with errors of 1e-11.
+        // Variances are up to 1e4 and are differences of numbers of 6e4, with errors of 1e-11.
         assert_true(fabs(compare(NULL, &a, &b, &mask).ssim - sum / shares) < 1e-10);
         mask_destroy(&mask);
         image_destroy(&a);
@@ -248,7 +248,7 @@ static void similarity_is_over_compared_pixels(void **state)
     }
 }
 
-// 1200 pixels of which 144 are ignored: 1 % is 10.56 of 1056.
+// 144 of 1200 pixels are ignored: 1 % of the other 1056 is 10.56.
 static void percentages_are_of_compared_pixels(void **state)
 {
     (void)state;

@@ -13,10 +13,10 @@ enum { SIDE = 20 };
 typedef struct Tile {
     int count;             // of pixels
     float light, coverage; // grey, not premultiplied
-    float bald;            // share of the pixel that is not hair
+    float bald;            // share of the pixel without hair
 } Tile;
 
-// What the meter says of tiles that fill an image together.
+// Meters an image that consists of these tiles.
 static double meter(const Tile *tiles, int count, Tone tone)
 {
     Image image, hair;
@@ -43,7 +43,7 @@ static double meter_all(double light)
     return meter(&(Tile){SIDE * SIDE, (float)light, 1, 0}, 1, TONE_NONE);
 }
 
-// By every curve.
+// With every tone curve.
 static void even_hair_shows_as_the_grey_that_it_is(void **state)
 {
     (void)state;
@@ -51,12 +51,13 @@ static void even_hair_shows_as_the_grey_that_it_is(void **state)
         for (int stops = -8; stops <= 8; ++stops) {
             const Tile tile = {SIDE * SIDE, (float)(METER_GREY * exp2(stops)), 1, 0};
             double shown = tone_map(tone, (double)tile.light * exp2(meter(&tile, 1, tone)));
-            // Half a step of exposure, and as much again for the steepest curve's slope.
+            // Half a step of exposure, and as much again for the curve's steepest slope.
             assert_true(fabs(log2(shown / METER_GREY)) <= METER_STEP);
         }
 }
 
-// Three quarters of dark pixels and one of bright ones: shown, they are METER_GREY on average.
+// Three quarters of the pixels are dark and a quarter is bright: their mean after the tone curve is
+// METER_GREY.
 static void it_is_the_mean_shown_that_counts(void **state)
 {
     (void)state;
@@ -102,7 +103,7 @@ static void nothing_and_black_have_no_exposure(void **state)
     assert_true(meter_all(0) == 0);
 }
 
-// 4 % of the pixels, of a mesh, are 50 times as bright as the hair.
+// 4 % of the pixels, which show a mesh, are 50 times as bright as the hair.
 static void highlights_stay_below_white(void **state)
 {
     (void)state;
@@ -112,7 +113,8 @@ static void highlights_stay_below_white(void **state)
     assert_true(meter(fewer, 2, TONE_NONE) == meter_all(0.01));
 }
 
-// Luminance of red, green and blue (ITU-R BT.709), of half-covered pixels over their coverage.
+// Luminance of red, green and blue (ITU-R BT.709); half-covered pixels are divided by their
+// coverage.
 static void colours_count_by_their_luminance(void **state)
 {
     (void)state;

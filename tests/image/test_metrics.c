@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// RMSE, PSNR, SSIM and FLIP against figures that tests/data/image_figures.py computed in another
-// way, and in cases whose result is known.
+// RMSE, PSNR, SSIM and FLIP against values of an independent computation,
+// tests/data/image_figures.py, and in cases with known results.
 #include "image/compare.h"
 #include "image/flip.h"
 #include "image/float_image.h"
@@ -17,7 +17,7 @@
 
 enum { W = 37, H = 29 };
 
-// The formulas of image_figures.py.
+// The same formulas as in image_figures.py.
 static void color_at(uint8_t c[3], const char *kind, int x, int y)
 {
     int n = (x * 7919 + y * 104729 + x * y * 31) % 251;
@@ -96,9 +96,10 @@ static const double DIFFERENCES[][2] = {
     {0, 0}, {1, 0.0575393531}, {20, 0.468474517}, {100, 0.967379761}, {203.301655, 1},
 };
 
-// The planes are floats: rounding an L*a*b* of up to 100 moves it by up to 4e-6. At a HyAB distance
-// of 1 FLIP has the slope 0.04, and less above; below, the power 0.7 makes it steeper, and the mean
-// over many such pixels may be off by some 1e-7. A hundredth of any constant moves more.
+// Images are stored as floats: rounding an L*a*b* value of up to 100 moves it by up to 4e-6. At a
+// HyAB distance of 1, FLIP's slope is 0.04, and less above; below 1, the power 0.7 makes it
+// steeper, so that the mean over many such pixels may err by about 1e-7. Changing any constant by a
+// hundredth changes the result by more.
 #define FLIP_TOLERANCE 1e-6
 #define MEAN_TOLERANCE 5e-7
 
@@ -135,8 +136,8 @@ static void colors_are_those_of_an_independent_computation(void **state)
     }
 }
 
-// By hand: white and black have no chroma, so HyAB is their L*, 100. Green and blue, the farthest
-// colours, are 1 apart.
+// By hand: white and black have no chroma, so that HyAB is their difference in L*, 100. Green and
+// blue, the most distant colours, differ by 1.
 static void differences_of_colors_are_spread_over_0_to_1(void **state)
 {
     (void)state;
@@ -147,7 +148,7 @@ static void differences_of_colors_are_spread_over_0_to_1(void **state)
         assert_true(fabs(flip_color_difference(DIFFERENCES[i][0]) - DIFFERENCES[i][1]) < 1e-8);
 }
 
-// compare_images has a short cut for them; here is none.
+// compare_images has a shortcut for equal images; these functions have none.
 static void equal_plates_score_exactly_nothing(void **state)
 {
     (void)state;
@@ -165,7 +166,7 @@ static void equal_plates_score_exactly_nothing(void **state)
     }
 }
 
-// The definition of both metrics has no first and second picture.
+// By definition, both metrics are symmetric.
 static void the_order_of_pictures_does_not_matter(void **state)
 {
     (void)state;
@@ -181,8 +182,8 @@ static void the_order_of_pictures_does_not_matter(void **state)
     float_image_destroy(&b);
 }
 
-// Filters are wider than these pictures, SSIM's window too. A black and a white pixel alone have
-// SSIM C1 / (255^2 + C1), as black and white areas, and FLIP as those.
+// The filters and SSIM's window are larger than these images. A single black and a single white
+// pixel have the SSIM of black and white areas, C1 / (255^2 + C1), and also the FLIP of areas.
 static void a_single_pixel_can_be_compared(void **state)
 {
     (void)state;
@@ -198,8 +199,8 @@ static void a_single_pixel_can_be_compared(void **state)
     }
 }
 
-// Windows shrink to the largest odd square that fits; whatever it is, black and white have the SSIM
-// of areas, and equal pictures that of 1.
+// Windows shrink to the largest odd square that fits. For any size, black and white have the SSIM
+// of areas, and equal images have 1.
 static void pictures_of_every_small_size_can_be_compared(void **state)
 {
     (void)state;
@@ -217,7 +218,8 @@ static void pictures_of_every_small_size_can_be_compared(void **state)
         }
 }
 
-// From far away a lone dot fades; from near it is seen. That is what the distance is for.
+// A single dot is invisible from far away and visible from nearby: FLIP depends on the viewing
+// distance.
 static void what_is_seen_depends_on_the_distance(void **state)
 {
     (void)state;

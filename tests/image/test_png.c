@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PNG files: every size and kind there and back, and the format by its letter.
+// PNG files: every size and kind can be written and read back, and every field of the format is as
+// specified.
 #include "base/bytes.h"
 #include "image/image.h"
 #include "image/png.h"
@@ -15,7 +16,7 @@
 
 #include <cmocka.h>
 
-// A picture with gradients, noise and both ends of the range in every channel.
+// Gradients, noise and both ends of the range in every channel.
 static Image make_image(int width, int height, int channels)
 {
     Image image;
@@ -40,7 +41,7 @@ static void assert_same_image(const Image *a, const Image *b)
                         (size_t)a->width * (size_t)a->height * (size_t)a->channels);
 }
 
-// One line of what can be printed.
+// Checks for one line of printable text.
 static void assert_line(const char *text)
 {
     if (!*text || strstr(text, "(null)")) fail_msg("no reason: '%s'", text);
@@ -70,7 +71,8 @@ static uint32_t read_big_endian(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-// The checksum of the PNG specification, appendix D, bit by bit: slow, but not the code under test.
+// The checksum of the PNG specification, appendix D, bit by bit: slow, but independent of the code
+// under test.
 static uint32_t checksum(const uint8_t *data, size_t size)
 {
     uint32_t crc = 0xffffffffu;
@@ -106,7 +108,7 @@ static void the_file_is_made_of_valid_chunks(void **state)
     image_destroy(&image);
 }
 
-// A decoder for this one kind of file, which shares no code with the encoder or with png_read.
+// A decoder for this one kind of file that shares no code with the encoder or png_read.
 static void every_row_is_the_difference_from_the_row_above(void **state)
 {
     (void)state;
@@ -201,7 +203,7 @@ static void a_cut_file_is_bad_input(void **state)
     Bytes png;
     const char *path = temporary_path(state, "cut.png");
     assert_int_equal(png_encode(&image, NULL, &png, &error), RESULT_OK);
-    // All but the closing chunk is needed.
+    // Reading needs every byte except those of the last chunk.
     for (size_t size = 0; size < png.size - 12; size++) {
         Bytes cut = {.data = png.data, .size = size};
         assert_int_equal(bytes_write_file(&cut, path, &error), RESULT_OK);
@@ -211,7 +213,7 @@ static void a_cut_file_is_bad_input(void **state)
     image_destroy(&image);
 }
 
-// Sums protect every byte, those of chunks too that nothing reads.
+// Checksums protect every byte, also of chunks that the reader ignores.
 static void any_flipped_bit_is_found(void **state)
 {
     (void)state;
@@ -235,7 +237,7 @@ static void any_flipped_bit_is_found(void **state)
     image_destroy(&image);
 }
 
-// --- Texts.
+// --- Text chunks.
 
 static const char *const KEYS[] = {"Software", "Frame", "A b", "Fingerprint"};
 static const char *const VALUES[] = {"tractrix 0", "", "na\u00efve \u2192 \U0001f600\nline",
@@ -294,7 +296,7 @@ static void texts_are_clean(void **state)
     image_texts_destroy(&texts);
 }
 
-// --- Files of other programs: chunks made here, rows compressed by zlib's format.
+// --- Files of other programs: the test makes the chunks and compresses the rows in zlib's format.
 
 typedef struct File {
     uint8_t data[4096];
@@ -348,13 +350,13 @@ static Result decode(Image *image, const File *file, Error *error)
     return result;
 }
 
-// Two pixels beside each other of each kind, as RGB or RGBA of the depth that comes out.
+// Two adjacent pixels of each kind, and the expected RGB or RGBA in the resulting depth.
 static void every_kind_of_pixel_is_read(void **state)
 {
     (void)state;
     static const struct {
         int depth, type; // 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGBA
-        uint8_t row[17]; // with the filter
+        uint8_t row[17]; // including the filter byte
         size_t size;
         const char *colours;
         int colour_bytes;
@@ -399,7 +401,7 @@ static void every_kind_of_pixel_is_read(void **state)
             Image image;
             Error error = {{0}};
             add_header(&file, 2, 1, kinds[i].depth, kinds[i].type, laced);
-            add_chunk(&file, "gAMA", "\0\1\x86\xa0", 4); // 1: not looked at
+            add_chunk(&file, "gAMA", "\0\1\x86\xa0", 4); // gamma 1: ignored
             if (kinds[i].type == 3) add_chunk(&file, "PLTE", palette, sizeof palette);
             if (kinds[i].colours)
                 add_chunk(&file, "tRNS", kinds[i].colours, (size_t)kinds[i].colour_bytes);
@@ -425,13 +427,14 @@ static void every_kind_of_pixel_is_read(void **state)
         }
 }
 
-// Texts may be compressed a thousand times: large ones are left out, and so are those after 128.
+// Compressed text can grow a thousandfold: large texts are left out, and so are all texts after
+// 128.
 static void texts_that_swell_are_left_out(void **state)
 {
     (void)state;
     enum { LARGE = 200000 };
     static char letters[LARGE];
-    uint8_t chunk[1000] = "Large\0"; // key, its end and the way of compression
+    uint8_t chunk[1000] = "Large\0"; // key, its end and the compression method
     static File file;
     ImageTexts texts;
     memset(letters, 'a', sizeof letters);
@@ -452,7 +455,8 @@ static void texts_that_swell_are_left_out(void **state)
     image_texts_destroy(&texts);
 }
 
-// A header may ask for far more than the file can hold: refused at once, whatever is behind it.
+// A header may require far more memory than the file's size can justify: refused at once, whatever
+// follows.
 static void bombs_are_refused(void **state)
 {
     (void)state;
@@ -487,15 +491,15 @@ static void too_few_and_wrong_rows_are_found(void **state)
         File file;
         Image image;
         Error error = {{0}};
-        add_header(&file, 4, 4, 8, i == 2 ? 5 : 2, 0); // a kind of pixel that is none
-        rows[26] = i == 1 ? 9 : 0;                     // a filter that is none
+        add_header(&file, 4, 4, 8, i == 2 ? 5 : 2, 0); // an undefined kind of pixel
+        rows[26] = i == 1 ? 9 : 0;                     // an undefined filter
         add_end(&file, rows, i == 0 ? sizeof rows - 1 : sizeof rows);
         assert_int_equal(decode(&image, &file, &error), RESULT_BAD_INPUT);
         assert_line(error.text);
     }
 }
 
-// Of 256 colours and fewer there are indices, of more the colours themselves.
+// Images of up to 256 colours are stored with a palette, others with full colours.
 static void palettes_keep_every_colour(void **state)
 {
     (void)state;
@@ -509,7 +513,7 @@ static void palettes_keep_every_colour(void **state)
             image.pixels[3 * i + 2] = 7;
         }
         assert_int_equal(png_encode_palette(&image, &small, NULL), RESULT_OK);
-        enum { COLOR_TYPE = 25, PALETTE = 3 }; // its place in the file, and indices
+        enum { COLOR_TYPE = 25, PALETTE = 3 }; // position in the file; value for palettes
         assert_int_equal(small.data[COLOR_TYPE], colors <= 256 ? PALETTE : 2);
         assert_int_equal(png_decode_deep(&back, &small, "small", NULL), RESULT_OK);
         assert_same_image(&image, &back);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Devices of the library, simulations and images on them, and the host's context beside them.
+// Devices of the library, simulations and images on them, and interaction with the host's OpenGL
+// context.
 #include "support/library_fixture.h"
 
 #include <epoxy/egl.h>
@@ -20,9 +21,9 @@
 
 #define error library_error
 
-static TractrixDevice *device; // of all tests that need no other
+static TractrixDevice *device; // for all tests that need no other device
 
-// The environment that programs look at has no say here.
+// The environment variables that programs read have no effect.
 static int open_device(void **state)
 {
     (void)state;
@@ -45,7 +46,7 @@ static TractrixSimulation *simulate(TractrixDevice *on, const char *const *param
     TractrixScene *scene = library_scene(parameters);
     TractrixSimulation *simulation;
     WELL(tractrix_simulation_create(&simulation, on, scene, &error));
-    tractrix_scene_destroy(scene); // a simulation needs it no more
+    tractrix_scene_destroy(scene); // the simulation no longer needs it
     return simulation;
 }
 
@@ -66,7 +67,8 @@ static void assert_near(const float *a, const float *b, float within)
 
 // --- Positions.
 
-// Strands of several sizes lie in tiles of one size each on the GPU: here they are in their order.
+// The GPU stores strands of each size in tiles of their own; mapped positions are in the strands'
+// original order.
 static void maps_strands_in_their_order(void **state)
 {
     static const char *const parameters[] = {"followers", "2", "follower_radius", "0.001", NULL};
@@ -86,7 +88,7 @@ static void maps_strands_in_their_order(void **state)
     assert_int_equal(followers.strand_count, 2 * FIXTURE_STRANDS);
     assert_int_equal(followers.vertex_count, 2 * FIXTURE_VERTICES);
     for (uint32_t s = 0, at = 0; s < 2 * FIXTURE_STRANDS; at += followers.sizes[s++]) {
-        uint32_t first = 0; // of its guide
+        uint32_t first = 0; // of the strand's guide
         for (uint32_t g = 0; g < s / 2; ++g) first += library_sizes[g];
         assert_int_equal(followers.sizes[s], library_sizes[s / 2]);
         assert_near(&followers.position[4 * at], position[first], 0.0011f);
@@ -104,7 +106,7 @@ static void maps_strands_in_their_order(void **state)
 
 // --- Motion.
 
-// A turn of 90 degrees about z in four frames, and a way along x.
+// A turn of 90 degrees about z within four frames, and a motion along x.
 static TractrixPose pose_after(int frame)
 {
     double half = 0.5 * 1.5707963267948966 * frame / 4;
@@ -122,7 +124,7 @@ static void follows_poses(void **state)
         WELL(tractrix_simulation_advance(simulation, &pose, &error));
     }
     assert_true(fabs(tractrix_simulation_time(simulation) - 4.0 / 60) < 1e-9);
-    WELL(tractrix_simulation_advance(simulation, NULL, &error)); // stays where it is
+    WELL(tractrix_simulation_advance(simulation, NULL, &error)); // does not move
     TractrixPositions moved = map(simulation, TRACTRIX_GUIDES);
     for (uint32_t s = 0, at = 0; s < FIXTURE_STRANDS; at += library_sizes[s++]) {
         const float *p = position[at], root[3] = {0.4f - p[1], p[0], p[2]};
@@ -131,9 +133,9 @@ static void follows_poses(void **state)
     tractrix_simulation_destroy(simulation);
 }
 
-// The same motion by the scene's own keys and by poses, over frames of two steps each: the same
-// hair. Poses go by screws, keys straight; without a turn these are one. The bound is that of
-// float32 places at 0.5 m over 8 steps.
+// Keys of the scene and poses given by the host describe the same motion over frames of two steps
+// each, and move hair equally. Poses are interpolated by screw motions and keys linearly, which is
+// equal without rotation. The bound covers float32 positions at 0.5 m over 8 steps.
 static void moves_as_the_scene_would(void **state)
 {
     static const char json[] =
@@ -201,8 +203,8 @@ static TractrixSimulation *simulate_sheet(bool deforms)
     return simulation;
 }
 
-// A mesh whose vertices move as one body is a head that moves; and where it stretches to twice its
-// width, so do the roots.
+// A mesh whose vertices move rigidly acts like a moving head; if it stretches to twice its width,
+// so do the roots.
 static void follows_a_mesh(void **state)
 {
     float sheet[4][3], position[FIXTURE_VERTICES][3];
@@ -256,12 +258,12 @@ static void takes_live_parameters(void **state)
                 map(still, TRACTRIX_GUIDES).position[4 * tip] + 1e-4f);
     WELL(tractrix_renderer_create(&renderer, still, 48, 32, TRACTRIX_RGBA8, &error));
     WELL(tractrix_render(renderer, NULL, &image, &error));
-    WELL(tractrix_simulation_set(still, "fov", "60", &error)); // an automatic eye comes nearer
+    WELL(tractrix_simulation_set(still, "fov", "60", &error)); // the automatic camera comes nearer
     image.pixels = after;
     WELL(tractrix_render(renderer, NULL, &image, &error));
     tractrix_renderer_destroy(renderer);
     assert_memory_not_equal(before, after, sizeof before);
-    library_draw(still, NULL, before); // as a renderer that is made now
+    library_draw(still, NULL, before); // equals the image of a new renderer
     assert_memory_equal(before, after, sizeof before);
     tractrix_simulation_destroy(still);
     tractrix_simulation_destroy(blown);
@@ -281,7 +283,7 @@ static void draws_by_views_and_formats(void **state)
     static const char *const clear[] = {"background", "transparent", NULL};
     static uint8_t pixels[FIXTURE_PIXELS][4];
     static float light[FIXTURE_PIXELS][4];
-    // From 0.5 m before the hair, which fills about a third of the image's height.
+    // From 0.5 m in front of the hair, which fills about a third of the image's height.
     TractrixView view = {
         .size = sizeof view,
         .world_to_eye = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.04f, 0.06f, -0.5f, 1},
@@ -324,7 +326,8 @@ static void draws_by_views_and_formats(void **state)
     tractrix_simulation_destroy(simulation);
 }
 
-// A renderer keeps the number of threads that it was made with: its lists have room for these.
+// A renderer keeps the number of threads for which it was made, because its lists have room for
+// these only.
 static void keeps_pixels_when_threads_change(void **state)
 {
     enum { W = 480, H = 320 };
@@ -434,7 +437,7 @@ static void children_keep_their_parents(void **state)
     library_refused(tractrix_device_open(&own, &none, &error), TRACTRIX_NO_GL, "no such device");
 }
 
-// In the child nothing works, and nothing hangs.
+// In a forked child, no function works and none hangs.
 static void says_so_after_fork(void **state)
 {
     (void)state;
@@ -498,7 +501,7 @@ static void two_devices_work_side_by_side(void **state)
     }
 }
 
-// --- A host's context.
+// --- The host's context.
 
 static EGLDisplay host_display;
 static EGLContext host_context;
@@ -526,8 +529,8 @@ static void drop_host(void)
     eglDestroyContext(host_display, host_context);
 }
 
-// A device of the same driver opens, draws and closes while the host's context is current: it stays
-// so, with what is bound, and its display is not ended.
+// A device of the same driver is opened, used and closed while the host's context is current: the
+// context stays current with its bindings, and its display stays initialised.
 static void leaves_a_hosts_context_alone(void **state)
 {
     TractrixDevice *own;
@@ -573,7 +576,8 @@ static void assert_defaults(void)
     assert_int_equal(glGetError(), GL_NO_ERROR);
 }
 
-// The same positions and pixels in a borrowed context, whatever the host does with it in between.
+// Positions and pixels in a borrowed context equal those in an own context, whatever the host does
+// in between.
 static void works_in_a_borrowed_context(void **state)
 {
     TractrixDevice *borrowed = (TractrixDevice *)&error;
@@ -608,10 +612,10 @@ static void works_in_a_borrowed_context(void **state)
         TRACTRIX_USAGE, "multiple of 16");
     library_refused(tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, 9999, 0, &error),
                     TRACTRIX_USAGE, "9999");
-    glEnable(0x1234); // an error of the host's is none of the library's
+    glEnable(0x1234); // an error by the host must not be reported as the library's
     WELL(tractrix_simulation_advance(simulation, NULL, &error));
     assert_defaults();
-#ifndef NDEBUG // the check of the host's state is one of debug builds
+#ifndef NDEBUG // only debug builds check the host's state
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     library_refused(tractrix_simulation_advance(simulation, NULL, &error), TRACTRIX_USAGE,
                     "GL_PACK_ALIGNMENT is 0x1: expected 0x4");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Scenes, simulations, renderers and devices one after the other leave nothing behind: no memory,
-// no file, no thread. TEST_ROUNDS=10000 makes as many scenes and as many simulations with a
-// picture, and a hundredth as many devices.
+// Creating and destroying scenes, simulations, renderers and devices repeatedly leaves no memory,
+// file or thread behind. TEST_ROUNDS=10000 makes 10,000 scenes, 10,000 simulations with an image,
+// and a hundredth as many devices.
 #include "support/library_fixture.h"
 
 #include <dirent.h>
@@ -28,14 +28,14 @@ static int count_entries(const char *path)
     return count;
 }
 
-// Bytes that are in use: of the heap, and in pieces of their own.
+// Bytes in use, in the heap and in separately mapped blocks.
 static size_t used(void)
 {
     struct mallinfo2 info = mallinfo2();
     return info.uordblks + info.hblkhd;
 }
 
-// --- What is made and destroyed.
+// --- Objects to be created and destroyed.
 
 static void use_scene(TractrixDevice *device, int round)
 {
@@ -50,8 +50,8 @@ static void use_scene(TractrixDevice *device, int round)
                     TRACTRIX_BAD_INPUT, "sections");
 }
 
-// By several solvers in turn; every second one with a mesh that deforms, since that has the most
-// parts.
+// Several solvers take turns, and every second simulation has a deforming mesh, which uses most
+// parts of the library.
 static void use_simulation(TractrixDevice *device, int round)
 {
     static const char *const algos[] = {"split",  "emulation", "hybrid", "chain",
@@ -86,7 +86,7 @@ static void use_device(TractrixDevice *unused, int round)
     tractrix_device_destroy(device);
 }
 
-// --- What they leave.
+// --- Leftovers.
 
 static int by_size(const void *a, const void *b)
 {
@@ -94,10 +94,10 @@ static int by_size(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-// `rounds`, or TEST_ROUNDS / share if those are more; `rounds` go before, until caches are full.
-// The driver's own tables still grow and shrink now and then, by some kB at once, so rounds are
-// counted in windows, of which the middle one counts: a leak shows in all of them, such a table in
-// one or two.
+// Measures `rounds` rounds, or TEST_ROUNDS / share if that is more, after `rounds` rounds that fill
+// caches. The driver's own tables occasionally grow and shrink by several kB, so memory is measured
+// in several windows of rounds and the median counts: a leak appears in all windows, such a table
+// in one or two.
 static void measure(void (*use)(TractrixDevice *device, int round), TractrixDevice *device,
                     int rounds, int share)
 {
@@ -152,7 +152,8 @@ static void devices_leave_nothing(void **state)
     measure(use_device, NULL, DEVICES, 100);
 }
 
-// Blocks that glibc keeps for a thread's next ones (tcache) count as used: it keeps none here.
+// Blocks that glibc keeps for reuse by a thread (tcache) count as used, so tcache is turned off
+// here.
 int main(int count, char **arguments)
 {
     static const char NO_CACHE[] = "glibc.malloc.tcache_count=0";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes of the library, which need no device: parameters, arrays, errors as values; and images.
+// Scenes of the library, which need no device: parameters, arrays, errors as return values; and
+// images.
 #include "support/library_fixture.h"
 
 #include <jansson.h>
@@ -23,7 +24,7 @@ static void reads_and_writes_parameters(void **state)
     WELL(tractrix_scene_set(scene, -1, "wind", "2,0,-1", &library_error));
     assert_int_equal(tractrix_scene_get(scene, -1, "wind", text, sizeof text), 6);
     assert_string_equal(text, "2,0,-1");
-    // Cut to the room, the length is whole.
+    // The text is truncated to the buffer, and the full length is returned.
     assert_int_equal(tractrix_scene_get(scene, -1, "wind", text, 3), 6);
     assert_string_equal(text, "2,");
     assert_int_equal(tractrix_scene_get(scene, -1, "wind", NULL, 0), 6);
@@ -37,7 +38,7 @@ static void reads_and_writes_parameters(void **state)
                     TRACTRIX_USAGE, "output");
     library_refused(tractrix_scene_set(scene, 0, "algo", "split", &library_error), TRACTRIX_USAGE,
                     "section");
-    // What was refused changes nothing, and no message is no crash.
+    // Refused values change nothing, and a NULL error is allowed.
     assert_int_equal(tractrix_scene_set(scene, -1, "wind", "fast", NULL), TRACTRIX_USAGE);
     tractrix_scene_get(scene, -1, "wind", text, sizeof text);
     assert_string_equal(text, "2,0,-1");
@@ -72,7 +73,7 @@ static void lists_parameters(void **state)
     assert_ptr_equal(tractrix_parameter(0), tractrix_parameter(0));
 }
 
-// A look changes what nobody has said, and nothing else, whatever the order.
+// A look changes only parameters that were not set explicitly, in any order.
 static void gives_way_to_looks(void **state)
 {
     TractrixScene *one, *other;
@@ -96,7 +97,8 @@ static void gives_way_to_looks(void **state)
     tractrix_scene_get(one, 0, "shading", a, sizeof a);
     assert_string_equal(a, "marschner");
     tractrix_scene_get(one, -1, "scalp", a, sizeof a);
-    assert_string_equal(a, "none"); // a scene file says what there is
+    // with a scene file, nothing is added that it does not name
+    assert_string_equal(a, "none");
     WELL(tractrix_scene_set(one, -1, "look", "plain", &library_error));
     WELL(tractrix_scene_set(other, -1, "up", "y", &library_error));
     WELL(tractrix_scene_set(one, -1, "up", "y", &library_error));
@@ -108,9 +110,9 @@ static void gives_way_to_looks(void **state)
     tractrix_scene_destroy(other);
 }
 
-// --- A host that has given jansson its own allocators.
+// --- A host that has set jansson's allocators.
 
-enum { BEFORE = 32 }; // bytes before each block: no block is one of malloc's
+enum { BEFORE = 32 }; // bytes before each block, so that no block is one of malloc's
 
 static void *host_malloc(size_t size)
 {
@@ -297,7 +299,7 @@ static void compares_images(void **state)
     assert_true(figures.same && figures.largest == 0 && figures.compared == WIDTH * HEIGHT);
     assert_true(isinf(figures.psnr));
     b[1][4 * 2 + 1] ^= 8;
-    memset(&b[2][4 * WIDTH], 77, GAP); // no pixel
+    memset(&b[2][4 * WIDTH], 77, GAP); // not part of any pixel
     WELL(tractrix_compare(&figures, map[0], &one, &other, NULL, NULL, &library_error));
     assert_false(figures.same);
     assert_true(figures.largest == 8 && figures.failing == 1);
@@ -322,7 +324,7 @@ static void compares_images(void **state)
                     TRACTRIX_USAGE, "b.row_bytes");
 }
 
-// Every format and suffix reads back to the bit, EXR within a half's.
+// Every format and suffix can be read back exactly, EXR within the precision of half floats.
 static void writes_and_reads_images(void **state)
 {
     uint8_t bytes[HEIGHT][WIDTH * 4 + GAP];
@@ -363,7 +365,7 @@ static void writes_and_reads_images(void **state)
     snprintf(name, sizeof name, "%s/x.jpg", path);
     WELL(tractrix_image_write(&image, name, &library_error));
     library_refused(tractrix_picture_read(&picture, name, &library_error), TRACTRIX_BAD_INPUT,
-                    name); // it has lost what a comparison would measure
+                    name); // the file has lost what a comparison would measure
     for (int i = 0; i < HEIGHT * WIDTH * 4; ++i)
         light[i / (4 * WIDTH)][i / 4 % WIDTH][i % 4] = i % 4 == 3 ? 1 : 0.25f * (float)i;
     image = (TractrixImage){.size = sizeof image,
@@ -386,7 +388,7 @@ static void writes_and_reads_images(void **state)
                     name);
     assert_null(picture);
     library_refused(tractrix_image_write(&image, "x.tga", &library_error), TRACTRIX_USAGE, ".pfm");
-    assert_int_equal(rmdir(path), 0); // nothing else was left in it
+    assert_int_equal(rmdir(path), 0); // no other files are left in it
 }
 
 int main(void)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The mannequin's head: its distance, its mesh.
+// The mannequin's head: its distance function and its mesh.
 #include "mesh/head.h"
 #include "mesh/stand_in.h"
 #include "mesh/surface.h"
@@ -19,7 +19,7 @@ static Mesh make(void)
     return mesh;
 }
 
-// An edge's two ends, in the order of their numbers, and which way it runs.
+// An edge's two ends in the order of their numbers, and its direction.
 static int compare_edges(const void *a, const void *b)
 {
     const uint32_t *p = a, *q = b;
@@ -28,8 +28,8 @@ static int compare_edges(const void *a, const void *b)
     return 0;
 }
 
-// Each edge belongs to two triangles, which run along it in opposite directions, and V - E + F = 2:
-// one piece without a hole. The volume is positive: outwards.
+// Each edge belongs to two triangles with opposite directions, and V - E + F = 2: one closed piece
+// without a hole. The volume is positive, so that triangles face outwards.
 static void the_mesh_is_closed_and_oriented(void **state)
 {
     (void)state;
@@ -58,14 +58,14 @@ static void the_mesh_is_closed_and_oriented(void **state)
         double3_cross(b, c, normal);
         volume += double3_dot(a, normal) / 6.0;
     }
-    // Head and neck of an adult have some 4.5 litres, shoulders and chest as much again.
+    // An adult's head and neck have about 4.5 litres, and the shoulders and chest about as much.
     assert_true(volume > 0.006 && volume < 0.012);
     free(edge);
     mesh_destroy(&mesh);
 }
 
-// Vertices are rounded to 1e-5 m in each direction, so they are within sqrt(3)/2 1e-5 of where they
-// were, and distances grow by at most 1.2 of the way.
+// Vertices are rounded to 1e-5 m per coordinate, so that they move by up to sqrt(3)/2 1e-5 m, and
+// distances change by at most 1.2 times that.
 static void vertices_lie_on_the_surface(void **state)
 {
     (void)state;
@@ -79,8 +79,9 @@ static void vertices_lie_on_the_surface(void **state)
     mesh_destroy(&mesh);
 }
 
-// The distance is, to the bit. Triangles of the mesh are not, but their vertices' mirror images lie
-// within the height of a facet: edges of 12 mm on curves of 15 mm sag by 1.2 mm, most by far less.
+// The distance function is exactly symmetric. The mesh's triangles are not, but the mirror images
+// of vertices lie within the height of a facet: on curves with a radius of 15 mm, edges of 12 mm
+// deviate by 1.2 mm, and most by far less.
 static void left_and_right_are_alike(void **state)
 {
     (void)state;
@@ -104,7 +105,7 @@ static void left_and_right_are_alike(void **state)
     mesh_destroy(&mesh);
 }
 
-// How far the surface is from a point in a direction.
+// The distance from a point to the surface in a direction.
 static double reach(const Double3 from, const Double3 direction)
 {
     Double3 at;
@@ -116,8 +117,9 @@ static double reach(const Double3 from, const Double3 direction)
     return 0.0;
 }
 
-// Loomis: width, height and depth of the head are as 0.75 : 1 : 0.87, within a tenth, ears and nose
-// apart; the nose stands 15 to 30 mm before the lips' height, ears stand off, the neck is narrower.
+// Loomis: the head's width, height and depth, without ears and nose, are as 0.75 : 1 : 0.87, within
+// a tenth. The nose reaches 15 to 30 mm farther than the lips, the ears stand out, and the neck is
+// narrower.
 static void the_head_is_well_proportioned(void **state)
 {
     (void)state;
@@ -136,7 +138,7 @@ static void the_head_is_well_proportioned(void **state)
     assert_true(reach(neck, right) < 0.85 * 0.5 * width);
 }
 
-// The numbers that the build wrote into the programs are those that the head's own formulas give.
+// The numbers that the build wrote into the programs equal those of the head's formulas.
 static void the_stand_in_is_the_head(void **state)
 {
     (void)state;

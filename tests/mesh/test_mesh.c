@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes in Wavefront and PLY files, and those that the program makes.
+// Meshes from Wavefront and PLY files, and meshes made by the program.
 #include "mesh/mesh.h"
 #include "mesh/mesh_read.h"
 #include "mesh/obj.h"
@@ -117,7 +117,7 @@ static void all_forms_of_ply_give_the_same_square(void **state)
         assert_int_equal(mesh.vertex_count, 4);
         assert_int_equal(mesh.triangle_count, 2);
         assert_memory_equal(mesh.triangle, expected, sizeof expected);
-        for (int v = 0; v < 4; v++) { // y to the back
+        for (int v = 0; v < 4; v++) { // y becomes -z
             assert_true(mesh.position[v][0] == 2 * corners[v][0]);
             assert_true(mesh.position[v][2] == -2 * corners[v][1]);
             assert_memory_equal(mesh.normal[v], ((float[3]){0, 1, 0}), 12);
@@ -242,8 +242,8 @@ static void written_meshes_read_back_bit_for_bit(void **state)
     mesh_destroy(&back);
 }
 
-// Every edge of a closed mesh belongs to two triangles, once in each direction; Euler: V - E + F
-// = 2.
+// Every edge of a closed mesh belongs to two triangles, once in each direction; Euler's formula: V
+// - E + F = 2.
 static void the_sphere_is_closed_and_faces_outwards(void **state)
 {
     (void)state;
@@ -264,7 +264,7 @@ static void the_sphere_is_closed_and_faces_outwards(void **state)
     mesh_destroy(&mesh);
 }
 
-// Longitude runs by a 20th from side to side of a sector, its seam too; the vertex says latitude.
+// Longitude changes by a 20th over each sector, also at the seam; vertices have the latitude.
 static void shapes_have_longitude_and_latitude(void **state)
 {
     (void)state;

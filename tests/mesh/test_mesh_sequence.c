@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes over time: files in, positions between samples out.
+// Animated meshes: reading files, and positions between samples.
 #include "base/npy_array.h"
 #include "base/zip.h"
 #include "mesh/mesh_sequence.h"
@@ -33,7 +33,7 @@ static Result read(MeshSequence *sequence, Mesh *mesh, const char *path,
     return result;
 }
 
-// That the file holds SAMPLES, or is refused by a line with `why` in it.
+// Checks that the file contains SAMPLES, or is refused with `why` in the message.
 static void expect(const char *path, const MeshSequenceOptions *options, const char *why)
 {
     MeshSequence sequence;
@@ -84,7 +84,7 @@ static uint32_t swap(uint32_t word)
     return word >> 24 | (word >> 8 & 0xff00) | (word << 8 & 0xff0000) | word << 24;
 }
 
-// Bytes up to `size`, and a sample's number that is not finite where `bad`.
+// Writes the first `size` bytes of a file; if `bad`, the number of a sample is not finite.
 static const char *write_points(void **state, const char *name, bool mdd, bool bad, size_t size)
 {
     char bytes[200] = "POINTCACHE2";
@@ -132,7 +132,7 @@ static void point_caches_take_faces_from_the_rest_pose(void **state)
         for (size_t size = mdd ? 4 : 12; size < 86; size += 7)
             expect(write_points(state, name, mdd, false, size), &options, name);
     }
-    // MDD says when its samples are: a tenth of a second apart.
+    // MDD files contain the times of samples: a tenth of a second apart.
     MeshSequence sequence;
     Mesh mesh;
     Error error;
@@ -152,7 +152,7 @@ static void add_array(ZipWriter *zip, const char *name, const char *type, const 
     zip_add(zip, name, header, head, data, size);
 }
 
-// `faces` corners a face; numbers in millimetres, z up.
+// `faces`: number of corners per face; coordinates in millimetres, z up.
 static const char *write_npz(void **state, const char *name, uint32_t last_corner, bool bad)
 {
     int16_t points[2][3][3] = {{{0}}};
@@ -160,7 +160,7 @@ static const char *write_npz(void **state, const char *name, uint32_t last_corne
     const double fps = 12, unit = bad ? -1 : 1;
     const uint64_t shape[3] = {2, 3, 3}, face_shape[2] = {1, 3};
     const char up[4] = {'z', 0, 0, 0};
-    for (int i = 0; i < 6; ++i) { // (x, y, z) is (x, -z, y) with z up
+    for (int i = 0; i < 6; ++i) { // with z up, (x, y, z) becomes (x, -z, y)
         const float *p = ((const float(*)[3])SAMPLES)[i];
         const int16_t turned[3] = {(int16_t)p[0], (int16_t)-p[2], (int16_t)p[1]};
         memcpy(((int16_t(*)[3])points)[i], turned, sizeof turned);
@@ -189,7 +189,7 @@ static void arrays_of_numpy_say_faces_rate_unit_and_axes(void **state)
     Mesh mesh;
     Error error;
     MeshSequenceOptions options = OPTIONS;
-    options.unit = 2; // a user's word counts more than the file's
+    options.unit = 2; // the user's options take precedence over the file
     options.rate = 7;
     assert_int_equal(read(&sequence, &mesh, write_npz(state, "a.npz", 2, false), &options, &error),
                      RESULT_OK);
@@ -217,12 +217,12 @@ static void splines_are_exact_for_what_is_quadratic(void **state)
                        exact = linear || count == 2
                                    ? floor(x) * floor(x) + share * (2 * floor(x) + 1)
                                    : x * x;
-                // Positions of at most 25 in a few operations of float32.
+                // Positions of at most 25, a few operations in float32.
                 assert_true(fabs((double)p[0][0] - 3 * x) < 1e-5);
                 assert_true(fabs((double)p[0][1] - exact) < 1e-5);
                 assert_true(p[0][2] == -1);
             }
-            // It holds before and after.
+            // Constant before the first and after the last sample.
             float p[1][3];
             mesh_sequence_evaluate(&sequence, -3, p);
             assert_memory_equal(p, position[0], sizeof p);
@@ -239,11 +239,11 @@ static void a_cut_holds_and_jumps(void **state)
     MeshSequence sequence = {
         .times = {.count = 5, .rate = 1, .cut = cut}, .vertex_count = 1, .position = position};
     float p[1][3];
-    mesh_sequence_evaluate(&sequence, 1.5, p); // as if the parabola x^2 went on
+    mesh_sequence_evaluate(&sequence, 1.5, p); // continues the parabola x^2
     assert_true(fabsf(p[0][0] - 2.25f) < 1e-6f);
     mesh_sequence_evaluate(&sequence, 2.999, p);
     assert_true(p[0][0] == 4);
-    mesh_sequence_evaluate(&sequence, 3 - 1e-9, p); // a step's time, rounded
+    mesh_sequence_evaluate(&sequence, 3 - 1e-9, p); // the time of a step, rounded
     assert_true(p[0][0] == 100);
     mesh_sequence_evaluate(&sequence, 3.5, p);
     assert_true(fabsf(p[0][0] - 102.5f) < 1e-5f);
@@ -262,9 +262,9 @@ static void the_shape_tells_rest_from_motion(void **state)
     assert_true(mesh_sequence_shape(&sequence, 6) == mesh_sequence_shape(&sequence, 5));
 }
 
-// body.abc, written by Alembic 1.8: a quad and a triangle of five vertices, whose third one rises,
-// under a transform that moves 1 m a sample along x after doubling; a triangle that rests; a hidden
-// one.
+// body.abc, written by Alembic 1.8: a quad and a triangle with five vertices, of which the third
+// rises, under a transform that doubles the size and then moves by 1 m along x per sample; a
+// triangle at rest; and a hidden triangle.
 static void alembic_meshes_are_samples_with_their_transforms(void **state)
 {
     (void)state;
@@ -276,7 +276,7 @@ static void alembic_meshes_are_samples_with_their_transforms(void **state)
     assert_int_equal(sequence.times.count, 4);
     assert_float_equal(sequence.times.rate, 30, 1e-9);
     assert_int_equal(sequence.vertex_count, 8);
-    // Alembic's corners go round clockwise, a mesh's here do not.
+    // Alembic's corners are in clockwise order; ours are not.
     const uint32_t triangles[4][3] = {{3, 1, 2}, {3, 0, 1}, {2, 1, 4}, {5, 6, 7}};
     assert_int_equal(mesh.triangle_count, 4);
     assert_memory_equal(mesh.triangle, triangles, sizeof triangles);
@@ -297,7 +297,7 @@ static void alembic_meshes_are_samples_with_their_transforms(void **state)
 #define USD_FACES                                                                                  \
     "        int[] faceVertexCounts = [3]\n        int[] faceVertexIndices = [0, 1, 2]\n"
 
-// SAMPLES in half metres with z up, under a transform that moves by (2, 4, 6).
+// SAMPLES in units of half a metre with z up, under a transform that moves by (2, 4, 6).
 static void points_of_usd_are_samples_with_their_transforms(void **state)
 {
     static const char *const move =
@@ -319,7 +319,7 @@ static void points_of_usd_are_samples_with_their_transforms(void **state)
     Mesh mesh;
     Error error = {""};
     assert_int_equal(read(&sequence, &mesh, path, &OPTIONS, &error), RESULT_OK);
-    assert_float_equal(sequence.times.rate, 15, 1e-9); // every second of 30 time codes a second
+    assert_float_equal(sequence.times.rate, 15, 1e-9); // every second of 30 time codes per second
     assert_int_equal(mesh.triangle[0][1], 1);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&mesh);
@@ -366,7 +366,8 @@ static void meshes_of_usd_that_cannot_be_taken_are_refused_with_their_line(void 
                       "point3f[] points = [(0, 0, 0), (1, 0, 0)]\n}\n");
     temporary_write(state, "m.usda", text, 0644);
     expect(temporary_path(state, "m.usda"), &OPTIONS, "hair, not a mesh");
-    // Corners that go round clockwise are turned; faces of each time that are the same are taken.
+    // Corners in clockwise order are reversed; faces that are given for several times and are equal
+    // are accepted.
     snprintf(text, sizeof text,
              USD_HEAD "def Mesh \"M\"\n{\nuniform token orientation = \"leftHanded\"\n"
                       "int[] faceVertexCounts.timeSamples = {\n1: [3],\n2: [3],\n}\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a mesh turns at its vertices, points that are bound to it, and the rigid motion that fits.
+// Rotations of a mesh at its vertices, points bound to it, and fitted rigid motions.
 #include "mesh/mesh_binding.h"
 #include "support/shapes.h"
 
@@ -44,10 +44,11 @@ static void a_rigid_motion_turns_every_ring(void **state)
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
         double turn[4];
         mesh_turns_find(&turns, v, (const float(*)[3])moved, turn);
-        // Places at 1 m are rounded by 6e-8 m, rings here are 1.5 mm at least (at the poles).
+        // Positions at 1 m are rounded by 6e-8 m; the rings of neighbours are at least 1.5 mm wide
+        // here (at the poles).
         assert_true(angle_between(turn, MOTION.rotation) < 6e-8 / 1.5e-3 * 2);
     }
-    // A balloon does not turn.
+    // A growing balloon does not rotate.
     for (uint32_t v = 0; v < mesh.vertex_count; ++v)
         for (int k = 0; k < 3; ++k) moved[v][k] = 3 * mesh.position[v][k];
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
@@ -55,7 +56,7 @@ static void a_rigid_motion_turns_every_ring(void **state)
         mesh_turns_find(&turns, v, (const float(*)[3])moved, turn);
         assert_true(angle_between(turn, (const double[]){0, 0, 0, 1}) < 1e-5);
     }
-    // A collapsed one has no turn, and is finite.
+    // A collapsed mesh has no rotation, and the result is finite.
     memset(moved, 0, mesh.vertex_count * sizeof *moved);
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
         double turn[4];
@@ -67,7 +68,7 @@ static void a_rigid_motion_turns_every_ring(void **state)
     mesh_destroy(&mesh);
 }
 
-// A cylinder about z whose rings are turned in proportion to z: a shear of its skin.
+// A cylinder about z whose rings are rotated in proportion to z, which shears its surface.
 static double worst_turn(int rows, double shear)
 {
     const double radius = 0.1, height = 0.4;
@@ -102,8 +103,8 @@ static double worst_turn(int rows, double shear)
     for (int j = 1; j < rows; ++j)
         for (int i = 0; i < sectors; ++i) {
             int at = j * sectors + i;
-            // The turn about the axis, then about the new normal by half the shear's angle, back
-            // towards the axis.
+            // The expected rotation: about the axis, then about the new normal by half of the
+            // shear's angle in the opposite direction.
             double z = height * j / rows, about = shear * z / radius,
                    angle = 2 * 3.14159265358979 * i / sectors + about,
                    half = -0.5 * atan(0.5 * shear);
@@ -125,7 +126,7 @@ static void a_twisted_cylinder_turns_by_half_its_shear(void **state)
 {
     (void)state;
     double coarse = worst_turn(24, 0.3), fine = worst_turn(48, 0.3), finer = worst_turn(96, 0.3);
-    // The error falls with the edge's square; a ninth is left for edges' own rounding.
+    // Halving the edges divides the error by 4; 3.5 allows for rounding.
     assert_true(coarse < 0.02);
     assert_true(fine < coarse / 3.5 && finer < fine / 3.5);
 }
@@ -133,7 +134,8 @@ static void a_twisted_cylinder_turns_by_half_its_shear(void **state)
 static void twins_and_other_triangulations_make_no_difference(void **state)
 {
     (void)state;
-    // A square of four, cut either way, sheared: the corner vertex's ring has other triangles.
+    // A square of 2 x 2 cells, cut along either diagonal and sheared: the ring of the middle vertex
+    // has different triangles.
     const float rest[9][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0},
                               {2, 1, 0}, {0, 2, 0}, {1, 2, 0}, {2, 2, 0}};
     double turn[2][4];
@@ -143,7 +145,7 @@ static void twins_and_other_triangulations_make_no_difference(void **state)
         float moved[10][3];
         assert_int_equal(mesh_create(&mesh, 10, 8, NULL), RESULT_OK);
         memcpy(mesh.position, rest, sizeof rest);
-        memcpy(mesh.position[9], rest[4], sizeof rest[4]); // the middle, once more, as at a seam
+        memcpy(mesh.position[9], rest[4], sizeof rest[4]); // the middle vertex again, as at a seam
         for (uint32_t j = 0, t = 0; j < 2; ++j)
             for (uint32_t i = 0; i < 2; ++i, t += 2) {
                 uint32_t a = 3 * j + i, b = a + 1, c = a + 4, d = a + 3;
@@ -214,7 +216,7 @@ static void the_best_fit_finds_a_rigid_motion(void **state)
         rigid_motion_fit((const double(*)[3])from, (const double(*)[3])to, 5, &still);
     assert_true(angle_between(found.rotation, MOTION.rotation) < 1e-7);
     assert_true(double3_distance(found.translation, MOTION.translation) < 1e-9);
-    // Two points leave the turn about their line open: none is made.
+    // Two points do not determine the rotation about their line: none is made.
     double line[2][3] = {{0, 0, 0}, {1, 0, 0}}, lifted[2][3] = {{0, 0, 1}, {1, 0, 1}};
     found = rigid_motion_fit((const double(*)[3])line, (const double(*)[3])lifted, 2, &still);
     assert_true(angle_between(found.rotation, still.rotation) < 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Roots on the head: its quick search against a slow one.
+// Roots on the head: the fast search against a slow one.
 #include "mesh/scalp.h"
 
 #include <setjmp.h>
@@ -25,7 +25,7 @@ static double ramp(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-// Height over the hair line of docs/fur.md, m.
+// Height above the hair line of docs/fur.md, m.
 static double height(const Double3 direction, double radius)
 {
     double y = radius * direction[1], z = radius * direction[2];
@@ -40,7 +40,8 @@ static int take_roots(void **state)
     return 0;
 }
 
-// A ray that grazes the head may cross it twice within the last 2 mm, and then either will do.
+// A ray that grazes the head may cross it twice within the last 2 mm; then both results are
+// accepted.
 static void roots_are_where_the_head_begins(void **state)
 {
     (void)state;
@@ -54,8 +55,8 @@ static void roots_are_where_the_head_begins(void **state)
     }
 }
 
-// 4000 roots are about 2.5 degrees apart, and no direction over the hair line is more than three
-// times that far from one.
+// 4000 roots are about 2.5 degrees apart, and every direction above the hair line has a root within
+// three times that angle.
 static void no_place_with_hair_is_passed_over(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A mesh as a surface: distances, normals, texture coordinates; noise, sine and cosine for it.
+// A mesh as a surface: distances, normals, texture coordinates; and the noise, sine and cosine
+// functions of formulas.
 #include "base/portable.h"
 #include "base/random.h"
 #include "mesh/scalp.h"
@@ -23,9 +24,9 @@ static void sine_and_cosine_are_near_the_librarys(void **state)
     }
 }
 
-// Even between -1 and 1 at whole coordinates: the mean of 8000 is within five deviations, 1/sqrt(3)
-// each, of 0; smooth: a step of 1e-4 changes it by at most the slope of the blend, 1.5 of a change
-// of 2, along each axis.
+// At integer coordinates, noise is uniform between -1 and 1: the mean of 8000 values is within five
+// standard deviations of 0, 1/sqrt(3) each. It is smooth: along each axis, a step of 1e-4 changes
+// it by at most the blend's slope, 1.5, times a change of 2.
 static void noise_is_even_and_smooth(void **state)
 {
     (void)state;
@@ -39,8 +40,8 @@ static void noise_is_even_and_smooth(void **state)
     }
 }
 
-// A box about the origin; its triangles share no vertices, so that edges and corners are found by
-// place.
+// A box around the origin. Its triangles share no vertices, so that edges and corners must be found
+// by position.
 static void make_box(Mesh *mesh, const double half[3])
 {
     assert_int_equal(mesh_create(mesh, 36, 12, NULL), RESULT_OK);
@@ -69,7 +70,8 @@ static double box_distance(const double half[3], const double p[3])
     return out > 0 ? sqrt(out) : in;
 }
 
-// Halves of whole powers of two, so that corners are exact; distances of some 1, rounded to 1e-16.
+// Half-widths are sums of powers of two, so that corners are exact; distances of about 1 are
+// rounded to 1e-16.
 static void distances_to_a_box_are_exact(void **state)
 {
     (void)state;
@@ -92,9 +94,9 @@ static void distances_to_a_box_are_exact(void **state)
     mesh_destroy(&mesh);
 }
 
-// A tetrahedron is inside of all its planes. This one is sharp: beside an edge or a corner of it
-// one face's normal alone would call the outside inside. Corners are exact, planes are off by
-// 1e-16.
+// A tetrahedron's inside is behind all of its planes. This one is sharp: near an edge or a corner,
+// the normal of a single face would classify some outside points as inside. Corners are exact,
+// planes err by 1e-16.
 static void sharp_edges_and_corners_have_two_sides(void **state)
 {
     (void)state;
@@ -129,7 +131,7 @@ static void sharp_edges_and_corners_have_two_sides(void **state)
     mesh_destroy(&mesh);
 }
 
-// The tree finds what looking at all triangles finds, whatever triangle it begins with.
+// The tree finds the same as a search of all triangles, whatever triangle it starts with.
 static void the_tree_misses_nothing(void **state)
 {
     (void)state;
@@ -144,7 +146,8 @@ static void the_tree_misses_nothing(void **state)
         for (int k = 0; k < 3; k++) p[k] *= 0.2 * random_real(&random);
         SurfacePoint nearest = {.triangle = random_below(&random, mesh.triangle_count)};
         double found = fabs(surface_nearest(&surface, p, &nearest)), best = INFINITY;
-        for (int a = 0; a < (int)mesh.triangle_count; a++) // no grid point of any is nearer
+        // no grid point on any triangle is nearer
+        for (int a = 0; a < (int)mesh.triangle_count; a++)
             for (int k = 0; k < 15; k++) {
                 static const int grid[15][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4},
                                                 {1, 0}, {1, 1}, {1, 2}, {1, 3}, {2, 0},
@@ -154,13 +157,13 @@ static void the_tree_misses_nothing(void **state)
                 SurfacePoint at = surface_at(&surface, (uint32_t)a, weight);
                 best = fmin(best, double3_distance(p, at.place));
             }
-        assert_true(found <= best + 1e-12 && found > best - 0.01); // sides are below 0.03
+        assert_true(found <= best + 1e-12 && found > best - 0.01); // edges are shorter than 0.03
     }
     surface_destroy(&surface);
     mesh_destroy(&mesh);
 }
 
-// Longitude grows to the right of somebody who looks at the face from inside, latitude upwards.
+// Seen from inside, longitude grows to the right and latitude upwards.
 static void texture_coordinates_have_axes(void **state)
 {
     (void)state;
@@ -192,7 +195,7 @@ static void triangles_without_area_are_counted(void **state)
     mesh.triangle[0][1] = 1, mesh.triangle[0][2] = 2;
     assert_int_equal(surface_create(&surface, &mesh, "m.obj", &error), RESULT_OK);
     assert_int_equal(surface.flat_count, 1);
-    SurfacePoint nearest = {.triangle = 1}; // the flat one
+    SurfacePoint nearest = {.triangle = 1}; // the degenerate triangle
     double3_copy((Double3){0}, nearest.place);
     assert_true(fabs(surface_nearest(&surface, (Double3){0.2, 0.2, -3}, &nearest) + 3) < 1e-12);
     surface_destroy(&surface);

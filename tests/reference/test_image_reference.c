@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The exact image against areas and opacities computed by hand, and the error of the rasterisers
-// against it.
+// The exact image against areas and opacities computed by hand, and the errors of the rasterisers
+// against the exact image.
 #include "reference/image_reference.h"
 #include "strands/strands_read.h"
 #include "support/plain.h"
@@ -18,7 +18,8 @@
 
 enum { SIDE = 128, MOST_ITEMS = 2 };
 
-// A scene of the studio (world and image agree in the plane z = 0) for the reference.
+// A scene for the reference that equals the studio's: world and image coordinates agree in the
+// plane z = 0.
 typedef struct Sitting {
     View view;
     Strands strands[MOST_ITEMS];
@@ -48,7 +49,7 @@ static void sitting_close(Sitting *sitting)
     image_destroy(&sitting->image);
 }
 
-// Takes the strands over.
+// Takes ownership of the strands.
 static SectionParams *sitting_add(Sitting *sitting, Strands strands, float radius, float opacity)
 {
     uint32_t i = sitting->scene.item_count++;
@@ -85,7 +86,7 @@ static Strands make_line(const float from[3], const float to[3])
     return studio_strands(1, 2, (const float(*)[3])position);
 }
 
-// Strands along the image's middle row, one behind the other, 1 apart.
+// Strands along the image's middle row, one behind the other at distances of 1.
 static Strands make_stack(uint32_t count)
 {
     float position[32][2][3];
@@ -104,7 +105,7 @@ static double alpha_sum(const Sitting *sitting)
     return sum;
 }
 
-// Rounding to 8 bits as in test_renderer.c; the grid of sub-samples errs by less.
+// Tolerance: rounding to 8 bits as in test_renderer.c; the grid of sub-samples errs by less.
 static void area_of_a_strand_is_width_times_length(void **state)
 {
     (void)state;
@@ -147,8 +148,8 @@ static void layers_multiply(void **state)
     }
 }
 
-// n strands of a tenth of a pixel, each behind the other, cover that tenth: what hides it hides
-// all.
+// n strands of a tenth of a pixel, one exactly behind the other, cover that tenth only: the first
+// hides the others.
 static void strands_behind_each_other_cover_no_more(void **state)
 {
     (void)state;
@@ -156,7 +157,7 @@ static void strands_behind_each_other_cover_no_more(void **state)
         Sitting sitting;
         sitting_open(&sitting, TRANSPARENT);
         Strands strands = make_stack(n);
-        for (uint32_t v = 0; v < strands.vertex_count; ++v) { // at half a pixel below the edge
+        for (uint32_t v = 0; v < strands.vertex_count; ++v) { // half a pixel below the edge
             float scale = (1000 - strands.position[v][2]) / 1000;
             strands.position[v][0] *= scale;
             strands.position[v][1] = 0.5f * scale;
@@ -252,22 +253,22 @@ static void threads_do_not_change_it(void **state)
     }
 }
 
-// --- The renderer against it.
+// --- The renderer against the exact image.
 
 enum { MOST_CASES = 4 };
 
 typedef struct Case {
     const char *name;
-    const char *file;  // hair that fills the image; NULL: a tangle
-    uint32_t count;    // of its strands
-    double step, turn; // px from vertex to vertex, and by how much each changes its direction
+    const char *file;  // a file whose hair fills the image; NULL: a tangle
+    uint32_t count;    // number of strands
+    double step, turn; // px between vertices, and the change of direction at each
     float radius, opacity, tip_ratio;
-    double bound[2][2][3]; // RMS of the difference in levels of 255 over the pixels that hair
-                           // touches: of colour and of opacity; quads, blocks; each of one sample a
-                           // pixel, of 2 x 2 and of 4 x 4
+    double bound[2][2][3]; // RMS of the difference in levels of 255, over the pixels with hair: of
+                           // colour and of opacity; by quads and by blocks; with 1, 2 x 2 and 4 x 4
+                           // samples per pixel
 } Case;
 
-// A file's hair, from the front, in the middle of the image.
+// The hair of a file seen from the front, in the middle of the image.
 static Strands read_hair(const char *file)
 {
     Error error = {{0}};
@@ -294,8 +295,8 @@ static void dress(SectionParams *material, float tip_ratio)
     params_destroy_section(&old);
 }
 
-// RMS over the pixels that differ from `background` in either image: of colours, or of opacity
-// where that is a channel.
+// RMS over the pixels that differ from `background` in either image: of colours, or of opacity if
+// there is an alpha channel.
 static double rms_difference(const Image *a, const Image *b, const uint8_t background[4])
 {
     double sum = 0;
@@ -317,7 +318,8 @@ static const float DARK[4] = {0.125f, 0.14f, 0.17f, 1};
 static const uint8_t DARK_BYTES[4] = {32, 36, 43};
 static const Light LIGHT = {.direction = {0.6f, 0.8f, 0}, .color = {1, 0.9f, 0.8f}, .intensity = 2};
 
-// The exact image of a scene before a dark background and, for its opacity, without any.
+// Draws the exact image of a case in front of a dark background and, for opacity, without
+// background.
 static void sitting_draw_case(Sitting exact[2], const Case *c)
 {
     for (int clear = 0; clear < 2; ++clear) {
@@ -347,7 +349,7 @@ static void compare_case(Studio *studio, const Case *c, const Sitting *exact, co
     if (rms > bound) fail_msg("%s, %s: RMS %.2f of 255, bound %.2f", what, c->name, rms, bound);
 }
 
-// Both rasterisers, of one sample a pixel, of 2 x 2 and of 4 x 4, colour and opacity.
+// Both rasterisers, with 1, 2 x 2 and 4 x 4 samples per pixel, colour and opacity.
 static void compare_cases(const Case *cases, size_t count)
 {
     static const char *const names[] = {"quads",  "quads, 2 x 2",  "quads, 4 x 4",
@@ -373,9 +375,9 @@ static void compare_cases(const Case *cases, size_t count)
         for (int clear = 0; clear < 2; ++clear) sitting_close(&exact[i][clear]);
 }
 
-// What is left is that a pixel's ribbons are taken to be spread evenly and independently over it,
-// where the reference knows which sub-samples they share; and, of colour, the sorted layers'
-// number.
+// The remaining errors: rasterisers assume that a pixel's ribbons are spread evenly and
+// independently over it, while the reference knows which sub-samples they share; and, for colour,
+// the number of sorted layers is limited.
 static void the_renderer_is_near_the_reference(void **state)
 {
     (void)state;
@@ -416,7 +418,7 @@ static void the_renderer_is_near_the_reference(void **state)
     compare_cases(cases, sizeof cases / sizeof *cases);
 }
 
-// From so far off that strands are 0.4 and 0.8 px wide, many of them shorter than a few pixels.
+// From so far away that strands are 0.4 and 0.8 px wide, and many are shorter than a few pixels.
 static void real_hair_is_near_the_reference(void **state)
 {
     (void)state;

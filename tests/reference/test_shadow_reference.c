@@ -9,7 +9,7 @@ static void exact_light_multiplies_through_layers(void **state)
     (void)state;
     ShadowStage stage;
     shadow_stage_open(&stage, shadow_stage_layers(5), 0.01f, 0.3f, NULL, &LIGHT_ABOVE);
-    shadow_assert_near(shadow_stage_exact(&stage, 0.1, 1, 0), 1, 0); // before all of them
+    shadow_assert_near(shadow_stage_exact(&stage, 0.1, 1, 0), 1, 0); // in front of all fibres
     for (int n = 1; n <= 5; ++n) {
         shadow_assert_near(shadow_stage_exact(&stage, 0.1, 0.05 - 0.1 * n, 0.0099), pow(0.7, n),
                            1e-6);
@@ -21,7 +21,7 @@ static void exact_light_multiplies_through_layers(void **state)
     shadow_stage_close(&stage);
 }
 
-// Every straight way through a bent ribbon crosses it once: no joint is counted twice or left out.
+// Every straight ray through a bent ribbon crosses it once: no joint counts twice or is missed.
 static void exact_light_meets_a_joint_once(void **state)
 {
     (void)state;
@@ -36,7 +36,7 @@ static void exact_light_meets_a_joint_once(void **state)
         strands.position[j][1] = 0.03f * (float)j;
     }
     shadow_stage_open(&stage, strands, 0.05f, 0.4f, NULL, &LIGHT_ABOVE);
-    for (int i = 5; i < 595; ++i) // not at the ends, which are square
+    for (int i = 5; i < 595; ++i) // not at the ends, which are straight cuts
         for (int k = -4; k <= 4; ++k) {
             double angle = 3.3 * i / 600, r = 0.495 + 0.01 * k;
             shadow_assert_near(shadow_stage_exact(&stage, r * cos(angle), -1, r * sin(angle)), 0.6,
@@ -59,15 +59,15 @@ static void exact_light_ends_at_the_mesh(void **state)
     mesh_destroy(&mesh);
 }
 
-// Before a lamp what lies half as far off is twice as large: behind a fibre at half the way to the
-// plane y = -2 the shadow is twice as wide.
+// In a lamp's light, an object at half the distance casts a shadow twice as large: a fibre half-way
+// to the plane y = -2 has a shadow twice as wide.
 static void exact_light_of_a_lamp_spreads(void **state)
 {
     (void)state;
     ShadowStage stage;
     shadow_stage_open(&stage, shadow_stage_layers(1), 0.01f, 0.3f, NULL, &LIGHT_LAMP);
-    double x = 2 * 0.1 - 0.3;                      // below the fibre's point 0.1
-    for (double side = -1; side <= 1; side += 2) { // the fibre's middle lies at z = -0.1 there
+    double x = 2 * 0.1 - 0.3;                      // below the fibre's point at 0.1
+    for (double side = -1; side <= 1; side += 2) { // there the fibre's middle is at z = -0.1
         shadow_assert_near(shadow_stage_exact(&stage, x, -2, -0.1 + side * 0.0199), 0.7, 1e-6);
         shadow_assert_near(shadow_stage_exact(&stage, x, -2, -0.1 + side * 0.0203), 1, 0);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Words for shells, text of any bytes, images for browsers, and what a page is made of.
+// Quoting words for shells, text from any bytes, images for browsers, and the parts of a page.
 #include "base/utf8.h"
 #include "report/picture.h"
 #include "report/report.h"
@@ -38,7 +38,7 @@ static void words_are_quoted_where_needed(void **state)
     expect_word("\xc2\x9b[2J", "$'\\302\\233[2J'"); // a control character that terminals obey
 }
 
-// A real shell reads every byte back.
+// A real shell reads all bytes back.
 static void shells_read_words_back(void **state)
 {
     (void)state;
@@ -109,7 +109,7 @@ static void pictures_have_8_bits(void **state)
     assert_memory_equal(picture.pixels, rounded, sizeof rounded);
     image_destroy(&picture);
     image_destroy(&deep);
-    // premultiplied light: half of it at half of the alpha is all of it; 0.5 becomes 187.5
+    // premultiplied: half of the light at half of the alpha is full light; 0.5 becomes 187.5
     const float values[8] = {0.25f, 0.5f, 2, 0.5f, -1, 0, 0, 0};
     const uint8_t shown[8] = {188, 255, 255, 128, 0, 0, 0, 0};
     assert_int_equal(image_create_kind(&light, 2, 1, 4, IMAGE_FLOAT, NULL), RESULT_OK);
@@ -125,7 +125,7 @@ static void thumbnails_are_means_of_light(void **state)
     (void)state;
     Image picture, small;
     assert_int_equal(image_create(&picture, 40, 20, 4, NULL), RESULT_OK);
-    for (size_t i = 0; i < 800; ++i) // columns of white, and of a red that is not seen
+    for (size_t i = 0; i < 800; ++i) // columns of white, and of an invisible red
         memcpy(picture.pixels + 4 * i, i % 2 ? "\xff\0\0\0" : "\xff\xff\xff\xff", 4);
     assert_int_equal(picture_create_thumbnail(&small, &picture, 10, 10, NULL), RESULT_OK);
     assert_int_equal(small.width, 10);
@@ -145,7 +145,7 @@ static void thumbnails_are_means_of_light(void **state)
     image_destroy(&picture);
 }
 
-// Browsers would show these in other colours than those that are compared.
+// Browsers would show such files in other colours than those that are compared.
 static void files_with_gamma_are_not_plain(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A cache gives back every bit, truncated or not, and reports what it cannot give.
+// A cache returns every bit of its frames, also after truncation, and reports what it can't return.
 #include "run/cache.h"
 #include "run/frame_source.h"
 #include "support/hair_fixture.h"
@@ -17,7 +17,7 @@
 
 enum { FRAMES = 5 };
 
-// A run that writes a cache, and what it drew.
+// A run that writes a cache, and the positions it drew.
 typedef struct Recorded {
     char path[300];
     uint64_t hash[FRAMES];
@@ -33,7 +33,7 @@ static void start(SimulationFixture *fixture, const char *played)
 {
     simulation_fixture_create(fixture, "chain", "");
     fixture->scene.run.frames = FRAMES;
-    fixture->scene.run.sim_rate = 25; // frames between steps as well
+    fixture->scene.run.sim_rate = 25; // frames lie also between steps
     if (!played) {
         simulation_fixture_start(fixture);
         return;
@@ -64,8 +64,8 @@ static void record(Recorded *recorded, void **state, const char *name, bool whol
     simulation_fixture_destroy(&fixture);
 }
 
-// Plays frame by frame, last first; how many are there, or -1 if the file is refused. What is shown
-// must be what was recorded.
+// Plays a file frame by frame, last frame first, and compares with what was recorded. Returns the
+// number of frames, or -1 if the file is refused.
 static int play(SimulationFixture *fixture, const Recorded *recorded, const char *path)
 {
     CacheReader reader;
@@ -115,7 +115,7 @@ static void write_bytes(const char *path, const uint8_t *data, size_t size)
     fclose(file);
 }
 
-// A whole cache, its bytes, and a simulation of the same scene to play others with.
+// A complete cache, its bytes, and a simulation of the same scene to play other files with.
 typedef struct Original {
     Recorded recorded;
     SimulationFixture fixture;
@@ -136,7 +136,7 @@ static void original_destroy(Original *original)
     simulation_fixture_destroy(&original->fixture);
 }
 
-// Plays its first `size` bytes.
+// Plays the first `size` bytes.
 static int original_play(Original *original, void **state, size_t size)
 {
     const char *path = temporary_path(state, "other.cache");
@@ -144,7 +144,8 @@ static int original_play(Original *original, void **state, size_t size)
     return play(&original->fixture, &original->recorded, path);
 }
 
-// Cut anywhere: the whole frames before the cut are there and right, the others are named.
+// Truncated anywhere: the complete frames before the cut are returned correctly, and the others are
+// named.
 static void every_truncation_keeps_the_whole_frames(void **state)
 {
     Original original;
@@ -160,8 +161,8 @@ static void every_truncation_keeps_the_whole_frames(void **state)
     original_destroy(&original);
 }
 
-// One bit wrong anywhere: never a wrong picture. All but one frame are there, or all (the index can
-// be done without), or the file is refused.
+// One flipped bit anywhere never gives a wrong image: all frames but one are returned, or all (the
+// index is not essential), or the file is refused.
 static void every_flipped_bit_is_found(void **state)
 {
     Original original;
@@ -178,7 +179,7 @@ static void every_flipped_bit_is_found(void **state)
         harmless += count == FRAMES;
     }
     assert_true(refused > 50 && damaged > 50);
-    assert_true(harmless > 0 && harmless < 200); // the unused header bytes, and the index
+    assert_true(harmless > 0 && harmless < 200); // unused header bytes and the index
     original_destroy(&original);
 }
 
@@ -207,7 +208,8 @@ static void another_scene_is_refused_by_the_value_that_differs(void **state)
     simulation_fixture_destroy(&fixture);
 }
 
-// A source that stops after `count` frames, as after an interrupt, or that ends the cache.
+// Runs a frame source that stops after `count` frames, as after an interrupt, or finishes the
+// cache.
 static void run_source(const char *path, bool resume, int count, Recorded *recorded)
 {
     SimulationFixture fixture;
@@ -244,7 +246,7 @@ static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
 {
     Recorded recorded = {0};
     record(&recorded, state, "whole.cache", true);
-    char path[300]; // temporary_path's results do not last
+    char path[300]; // the results of temporary_path are overwritten by later calls
     snprintf(path, sizeof path, "%s", temporary_path(state, "part.cache"));
     for (int stop = 0; stop < FRAMES; ++stop) {
         run_source(path, false, stop, &recorded);
@@ -253,14 +255,14 @@ static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
         assert_false(temporary_has(state, "part.cache.state"));
         assert_same_files(path, recorded.path);
     }
-    // More was written after the state was saved, the last frame only in part.
+    // More frames were written after the state was saved, the last one incompletely.
     Bytes file;
     run_source(path, false, 2, &recorded);
     assert_int_equal(bytes_read_file(&file, recorded.path, NULL), RESULT_OK);
     write_bytes(path, file.data, file.size * 9 / 10);
     run_source(path, true, FRAMES, &recorded);
     assert_same_files(path, recorded.path);
-    // The state is of a frame that the cache no longer has: from the start.
+    // The state belongs to a frame that the cache no longer has: simulates from the start.
     run_source(path, false, 3, &recorded);
     write_bytes(path, file.data, file.size * 3 / 10);
     run_source(path, true, FRAMES, &recorded);
@@ -268,7 +270,7 @@ static void stopped_and_resumed_after_any_frame_is_the_same_file(void **state)
     bytes_destroy(&file);
 }
 
-// Where chunk `number` begins that holds a frame; `number` FRAMES: where the file ends.
+// The offset of the chunk of frame `number`; if `number` is FRAMES, the file's size.
 static size_t frame_at(const Bytes *file, int number)
 {
     const uint8_t *at = file->data - 1, *end = file->data + file->size;
@@ -279,7 +281,7 @@ static size_t frame_at(const Bytes *file, int number)
     return number < FRAMES ? (size_t)(at - file->data) : file->size;
 }
 
-// A file without an index whose frames 1 and 2 have changed places ends before them.
+// A file without an index whose frames 1 and 2 are swapped is read only up to them.
 static void frames_in_another_order_are_not_shown(void **state)
 {
     Original original = {0};
@@ -302,8 +304,8 @@ static void frames_in_another_order_are_not_shown(void **state)
     simulation_fixture_destroy(&original.fixture);
 }
 
-// A bit that flips within a kept frame costs time, never a wrong file: from any place, with a state
-// behind the damage or with none.
+// A flipped bit in a frame costs time but never gives a wrong file, wherever it is, with the state
+// behind the damage or without a state.
 static void a_damaged_frame_is_simulated_again(void **state)
 {
     Recorded recorded = {0};
@@ -315,7 +317,7 @@ static void a_damaged_frame_is_simulated_again(void **state)
         run_source(path, false, count, &recorded);
         assert_int_equal(bytes_read_file(&file, path, NULL), RESULT_OK);
         uint8_t *chunk = memmem(file.data, file.size, "FRAM", 4);
-        chunk[CHUNK_HEADER_BYTES + 40] ^= 4; // in the first frame's payload
+        chunk[CHUNK_HEADER_BYTES + 40] ^= 4; // in the first frame's data
         write_bytes(path, file.data, file.size);
         run_source(path, true, FRAMES, &recorded);
         assert_same_files(path, recorded.path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The text of captions, and their place in the corner.
+// The text of captions and their position in the corner.
 #include "run/caption.h"
 
 #include <setjmp.h>
@@ -39,7 +39,7 @@ static void every_word_says_its_part(void **state)
     assert_string_equal(text, "");
 }
 
-// Pixels that differ from the grey that all had, and how many of them lie outside of the lowest
+// Counts the pixels that differ from the uniform background, and those of them outside the lowest
 // 20 rows.
 static void count_changed(const Image *image, int *changed, int *outside)
 {

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-// Strand `s` of the file, as it is drawn.
+// Strand `s` of the file as it is drawn.
 static void read_drawn(const SimulationFixture *fixture, uint32_t s, float (*positions)[3])
 {
     const Hair *hair = &fixture->simulation.sections[0].hair;
@@ -70,7 +70,7 @@ static void files_hold_what_is_drawn_bit_for_bit(void **state)
     check(state, "x_%d.data", "x_4.data", FORMAT_SALON_DATA);
 }
 
-// The numbers of the next list behind `key`, which has `count`.
+// Parses the next list after `key`, which has `count` numbers.
 static void parse_list(const char *text, const char *key, float *numbers, size_t count)
 {
     const char *at = strstr(text, key);
@@ -122,7 +122,7 @@ static void usd_holds_all_frames_of_all_sections(void **state)
     simulation_fixture_destroy(&fixture);
 }
 
-// Behind the guides, each near the one that it follows: their roots lie within the radius.
+// Followers come after the guides, each with a root within the radius of its guide's root.
 static void followers_come_with_them_if_asked_for(void **state)
 {
     SimulationFixture fixture;

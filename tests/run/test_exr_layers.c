@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The layers of tractrix-render's EXR files are what --aov draws, by both rasterisers.
+// The layers of tractrix-render's EXR files equal what --aov draws, by both rasterisers.
 #include "base/bytes.h"
 #include "image/pfm.h"
 #include "support/temporary.h"
@@ -30,7 +30,7 @@ static void render(void **state, const char *arguments, const char *name)
     assert_int_equal(system(line), 0);
 }
 
-// A channel of a scanline file, as floats or whole numbers of 32 bits.
+// A channel of a scanline file, as 32-bit floats or integers.
 static void read_channel(const char *path, const char *name, exr_pixel_type_t type, void *numbers)
 {
     exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -74,7 +74,7 @@ static Image read_aov(void **state, const char *raster, const char *word)
     return image;
 }
 
-// A half has 11 bits: of numbers up to 1 it is off by 2^-12 at most.
+// A half float has 11 bits: numbers up to 1 err by 2^-12 at most.
 static const float HALF_STEP = 1.0f / 4096;
 
 static void assert_layers(void **state, const char *raster)
@@ -84,7 +84,8 @@ static void assert_layers(void **state, const char *raster)
     static uint32_t ids[PIXELS];
     static bool hair[PIXELS];
     int seen = 0, lost = 0;
-    snprintf(exr, sizeof exr, "%s", temporary_path(state, "x.exr")); // the path is lost later
+    // the result of temporary_path is overwritten later
+    snprintf(exr, sizeof exr, "%s", temporary_path(state, "x.exr"));
     snprintf(arguments, sizeof arguments, "--raster %s", raster);
     render(state, arguments, "x.exr");
     Image depth = read_aov(state, raster, "depth"), coverage = read_aov(state, raster, "coverage"),
@@ -116,7 +117,7 @@ static void assert_layers(void **state, const char *raster)
         float length = 0, drawn = 0;
         for (int k = 0; k < 3; ++k) length += numbers[k][i] * numbers[k][i];
         for (int k = 0; k < 3; ++k) drawn += (2 * t[3 * i + k] - 1) * (2 * t[3 * i + k] - 1);
-        // Each of three numbers is rounded: the square is off by 2 sqrt(3) steps at most.
+        // Each of three numbers is rounded: the square errs by 2 sqrt(3) steps at most.
         assert_true(hair[i] ? fabsf(length - 1) <= 2 * sqrtf(3) * HALF_STEP : length == 0);
         for (int k = 0; k < 3 && hair[i]; ++k)
             assert_true(fabsf(numbers[k][i] - (2 * t[3 * i + k] - 1) / sqrtf(drawn)) <= HALF_STEP);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What changes the number that says which scene a frame shows: every parameter, unless a reason is
-// written down, and every input.
+// The fingerprint that identifies the scene of a frame changes with every input and every
+// parameter, unless a documented reason exempts it.
 #include "run/fingerprint.h"
 #include "support/temporary.h"
 
@@ -31,7 +31,7 @@ typedef struct Numbers {
 
 static const float POSITIONS[4][3] = {{0, 0, 0}, {0, -0.1f, 0}, {0.1f, 0, 0}, {0.1f, -0.1f, 0}};
 
-// Two strands before a mesh of one triangle. `algo`: of the only section.
+// Two strands in front of a mesh of one triangle. `algo`: of the only section.
 static void create(World *world, const char *algo)
 {
     SectionParams params;
@@ -86,7 +86,7 @@ static void *params_of(World *world, const ParamInfo *info)
     return scene_params(&world->scene, info->scope, 0);
 }
 
-// Gives the parameter another value than it has.
+// Changes the value of the parameter.
 static void change(World *world, const ParamInfo *info)
 {
     static const char *const WORDS[] = {"true",  "false", "1,2,3",   "0.1,0.2,0.3", "transparent",
@@ -101,7 +101,7 @@ static void change(World *world, const ParamInfo *info)
         if (strcmp(info->choices[i], before) != 0)
             assert_int_equal(params_parse(info, params, info->choices[i], NULL), RESULT_OK);
     for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS && !is_text && !info->choices[0]; ++i) {
-        params_parse(info, params, WORDS[i], NULL); // what is no value changes nothing
+        params_parse(info, params, WORDS[i], NULL); // invalid values change nothing
         after = params_format(info, params);
         bool changed = strcmp(before, after) != 0;
         free(after);
@@ -129,7 +129,7 @@ static void each_parameter_counts_or_is_exempt_for_a_reason(void **state)
              hair = strcmp(before.hair, after.hair) != 0;
         bool exempt = is_exempt(info->name),
              followers = strcmp(info->name, "export_followers") == 0;
-        // A map's path does not count, but what is in the file.
+        // A map's contents count, not its path.
         bool counts = !exempt || strcmp(info->name, "color_map") == 0;
         if (image != counts)
             fail_msg("%s %s an image's number", info->name, image ? "changes" : "keeps");
