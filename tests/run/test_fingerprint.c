@@ -239,7 +239,8 @@ static void map_strands(World *world)
     world->assets.strands->strand_uv = calloc(2, sizeof(float[2]));
 }
 
-// Turned lights move with the camera, frame by frame; the length of the sequence says how far.
+// Lights that turn with the camera differ from frame to frame, and the number of frames decides by
+// how much.
 static void turn(World *world)
 {
     world->scene.run.turntable = 360;
@@ -272,7 +273,7 @@ static void every_input_counts(void **state)
         {"triangle", turn_triangle, true, true},
         {"driver", other_driver, true, true},
         {"its version", other_version, true, true},
-        {"processor", other_processor, false, false}, // farms have several
+        {"processor", other_processor, false, false}, // render farms have different processors
         {"maker of the cache", other_maker, true, true},
         {"head", move_head, true, true},
         {"light", dim_light, true, true},
@@ -297,7 +298,7 @@ static void every_input_counts(void **state)
     }
 }
 
-// --frames, --first and --caption file act by what a frame shows.
+// --frames, --first and --caption file count only where they change what a frame shows.
 static void what_a_frame_shows_counts(void **state)
 {
     World one, two;
@@ -307,7 +308,7 @@ static void what_a_frame_shows_counts(void **state)
     turn(&one);
     turn_longer(&two);
     assert_string_not_equal(numbers_of(&one).image, numbers_of(&two).image);
-    one.frame = two.frame = 0; // where both begin
+    one.frame = two.frame = 0; // frame 0 is equal in both
     assert_string_equal(numbers_of(&one).image, numbers_of(&two).image);
     two.scene.run.frames = one.scene.run.frames;
     two.scene.run.first = 30;

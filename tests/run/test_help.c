@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-// What --help TOPIC prints; the caller frees it.
+// Returns the output of --help TOPIC; the caller frees it.
 static char *capture(const char *topic)
 {
     char *text = NULL;
@@ -27,8 +27,8 @@ static char *capture(const char *topic)
     return text;
 }
 
-// Where the help describes the flag: at the begin of a line, or behind the letter that stands for
-// it. Other flags' help may name it before.
+// Finds the place where the help describes the flag: at the start of a line or after the flag's
+// letter. The help of other flags may mention it earlier.
 static const char *find_entry(const char *help, const char *flag)
 {
     for (const char *at = help; (at = strstr(at, flag)); ++at) {
@@ -64,7 +64,7 @@ static void help_names_every_flag_with_its_default(void **state)
     free(table);
 }
 
-// That it says the same as the program: tests/project/check_schema.
+// tests/project/check_schema tests that the schema agrees with the program.
 static void the_schema_has_every_parameter_with_its_help(void **state)
 {
     (void)state;
@@ -80,7 +80,8 @@ static void the_schema_has_every_parameter_with_its_help(void **state)
         assert_non_null(json_object_get(top, info->name));
         assert_int_equal(json_object_get(section, info->name) != NULL,
                          info->scope == SCOPE_SECTION);
-        if (strcmp(info->name, "colliders") == 0) continue; // a part with a text of its own
+        // has its own definition with its own text
+        if (strcmp(info->name, "colliders") == 0) continue;
         if (!help || strncmp(help, info->help, strlen(info->help)) != 0)
             fail_msg("%s: %s", info->name, help);
     }

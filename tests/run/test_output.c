@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames to files and contact sheets. Videos, and what interrupts them, are in test_output_video.c.
+// Writing frames to files and contact sheets. Videos and their interruption are in
+// test_output_video.c.
 #include "image/png.h"
 #include "support/grey_frames.h"
 #include "support/temporary.h"
@@ -115,7 +116,7 @@ static void a_read_only_folder_fails_before_any_frame(void **state)
     grey_assert_line(&error, "Permission denied");
 }
 
-// A size limit stands for a full disk: writes end short in the same way.
+// A limit of file sizes imitates a full disk: writes are cut short in the same way.
 static void a_full_disk_ends_the_run_with_path_and_reason(void **state)
 {
     Error error, again;
@@ -189,7 +190,7 @@ static void the_pool_lends_no_more_images_than_it_has(void **state)
     grey_assert_frame(temporary_path(state, "pool_19.png"), 19, 3);
 }
 
-// Tiles lie as one reads; what is left over is black. Every byte is looked at.
+// Tiles are in reading order, and the rest is black. Every byte is compared.
 static void a_contact_sheet_holds_its_frames_in_order(void **state)
 {
     enum { COLUMNS = 3, ROWS = 2, FRAMES = 5 };

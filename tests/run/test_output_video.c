@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Videos with scripts in place of ffmpeg, and interrupts while they are written.
+// Videos with scripts that imitate ffmpeg, and interrupts while they are written.
 #include "base/interrupt.h"
 #include "base/interrupt_install.h"
 #include "support/grey_frames.h"
@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-// Puts a shell script in ffmpeg's place. Returns the PATH to go back to.
+// Puts a shell script in ffmpeg's place. Returns the previous PATH.
 static char *replace_ffmpeg(void **state, const char *script)
 {
     char *before = strdup(getenv("PATH")), path[2000], text[600];
@@ -66,7 +66,7 @@ static void a_dying_ffmpeg_fails_with_its_last_words_and_no_file(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Error error = {{0}};
         OutputOptions options = grey_options(temporary_path(state, "x.mp4"), 3);
-        // Larger than the pipe, so that no write ends before ffmpeg has.
+        // Larger than the pipe, so that no write ends before ffmpeg does.
         options.width = options.height = 1024;
         char *path = replace_ffmpeg(state, cases[i].script);
         Result result = grey_write(&options, 5, &error);
@@ -87,7 +87,8 @@ static void destroying_a_video_early_leaves_nothing(void **state)
     char *path = replace_ffmpeg(state, "exec sleep 600");
     assert_int_equal(output_create(&output, &options, &error), RESULT_OK);
     restore_path(path);
-    // The worker hangs in a full pipe with the first frame and has the second one before it.
+    // The worker waits with the first frame for the full pipe, and the second frame waits for the
+    // worker.
     assert_int_equal(grey_draw(output, 2, &error), RESULT_OK);
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 2);
     output_destroy(output);
@@ -106,8 +107,8 @@ static void a_video_without_frames_is_an_error(void **state)
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 1);
 }
 
-// In a process of its own, since an interrupt is for ever. ffmpeg never reads, so only the signal
-// can end the wait.
+// Runs in a process of its own, since an interrupt can't be undone. ffmpeg never reads, so that
+// only the signal can end the wait.
 static int wait_for_interrupt(const OutputOptions *options)
 {
     Error error;
@@ -128,7 +129,7 @@ static int wait_for_interrupt(const OutputOptions *options)
     return 0;
 }
 
-// The second one has a child of its own, which holds the pipe when its parent has been killed.
+// The second script has a child process that keeps the pipe open after the script has been killed.
 static void an_interrupt_ends_a_wait_and_leaves_nothing(void **state)
 {
     static const char *const scripts[] = {"exec sleep 600", "sleep 600; true"};

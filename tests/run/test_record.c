@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The record beside numbered files: what is written is read back, and why it cannot be written is
-// said.
+// The record next to numbered files: it can be read back, and errors of writing it are reported.
 #include "run/record.h"
 
 #include "base/bytes.h"
@@ -19,7 +18,7 @@
 
 static const char SCENE[] = "0123456789abcdef", OTHER[] = "fedcba9876543210";
 
-// The target x_%d.pfm, of which frame 1 is there.
+// The target x_%d.pfm, of which the file of frame 1 exists.
 static Target make_target(void **state, char **frame)
 {
     Target target;

@@ -37,8 +37,8 @@ static void as_many_are_drawn_as_are_counted(void **state)
             }
 }
 
-// Tiles are as far apart as whole frames can be, the first frame is there, and the step from the
-// last tile round to the first is like the others.
+// Tiles are evenly spaced, as far as whole frames allow; the first frame is included, and the step
+// from the last tile to the first equals the others.
 static void a_contact_sheet_takes_evenly_spaced_frames(void **state)
 {
     (void)state;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair in light shows the colour that --color asks for, and all colours of a groom have one
-// exposure.
+// Lit hair shows the colour given by --color, and all colours of a groom get the same exposure.
 #include "image/png.h"
 #include "support/temporary.h"
 
@@ -16,9 +15,9 @@
 
 static const char HEAD[] = "--mesh assets/head.obj", BALL[] = "--mesh assets/ball.obj";
 
-// Runs tractrix-render; the image is DIR/NAME.png, what it says DIR/NAME.txt. By blocks, also where
-// hardware is imitated: a CPU driver has no loops for as many ribbons as a small image has in a
-// tile.
+// Runs tractrix-render; the image is DIR/NAME.png, its output DIR/NAME.txt. Always by blocks, also
+// if a hardware GPU is imitated: loops of CPU drivers are too short for the many ribbons in a tile
+// of a small image.
 static void render(void **state, const char *groom, const char *mesh, const char *more,
                    const char *name)
 {
@@ -32,7 +31,7 @@ static void render(void **state, const char *groom, const char *mesh, const char
     assert_int_equal(system(line), 0);
 }
 
-// The exposure that the run of that name found (EV).
+// The exposure in EV that the run of that name chose.
 static double find_exposure(void **state, const char *name)
 {
     char text[400] = "", file[64];
@@ -55,7 +54,7 @@ static void read_image(void **state, const char *name, Image *image)
     assert_int_equal(png_read(image, temporary_path(state, file), &error), RESULT_OK);
 }
 
-// The mean light of pixels that hair covers by nine tenths and more, as sRGB levels.
+// The mean light of pixels that hair covers by nine tenths or more, as sRGB levels.
 static void find_mean(void **state, double mean[3])
 {
     Image image, cover;
@@ -75,7 +74,7 @@ static void find_mean(void **state, double mean[3])
     image_destroy(&cover);
 }
 
-// The colours of base/colors.c, written out: names and numbers are the same.
+// The colours of base/colors.c as numbers: they must equal the named colours.
 static void a_lit_groom_has_its_colour_on_average(void **state)
 {
     static const struct {
@@ -98,7 +97,7 @@ static void a_lit_groom_has_its_colour_on_average(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char flags[100];
         double mean[3];
-        bool known = strcmp(cases[i].groom, last) == 0; // its exposure and coverage
+        bool known = strcmp(cases[i].groom, last) == 0; // its exposure and coverage are known
         int length = snprintf(flags, sizeof flags, "--color %s", cases[i].color);
         if (known)
             snprintf(flags + length, sizeof flags - (size_t)length, " --exposure %.9g", exposure);
@@ -116,7 +115,7 @@ static void a_lit_groom_has_its_colour_on_average(void **state)
     }
 }
 
-// Whatever says the colour.
+// In whatever way the colour is given.
 static void all_colours_have_one_exposure(void **state)
 {
     static const char *const said[] = {"--color black",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Images of turntables: hair and mesh reach the margin, and the turn loops.
+// Images of turntables: hair and mesh reach the margin, and the turntable loops.
 #include "image/png.h"
 #include "support/temporary.h"
 
@@ -14,7 +14,7 @@
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
-// Runs tractrix-render with these arguments; pictures go to FOLDER.
+// Runs tractrix-render with these arguments; the images go to FOLDER.
 static void render(void **state, const char *arguments, const char *folder)
 {
     char line[1500];
@@ -34,8 +34,7 @@ static void read_frame(void **state, const char *folder, int frame, Image *image
     assert_true(image->width == WIDTH && image->height == HEIGHT);
 }
 
-// The largest distance of a pixel that is not transparent from the middle of the picture, pixels:
-// to its far edges.
+// The largest distance of the far edge of a visible pixel from the image's middle, in pixels.
 static void find_reach(const Image *image, double reach[2])
 {
     assert_int_equal(image->channels, 4);
@@ -47,8 +46,8 @@ static void find_reach(const Image *image, double reach[2])
         }
 }
 
-// Of the picture's halves 1 / 1.25 is used. A pixel is filled that is touched, so up to one more is
-// seen; a pointed tip may cover too little of its last two to show.
+// Content fills 1 / 1.25 of the image's half size. Every touched pixel is drawn, so that up to one
+// more is visible; the last two pixels of a pointed tip may be too faint to be visible.
 static void margins_are_kept(void **state, const char *arguments)
 {
     enum { FRAMES = 16 };
@@ -102,8 +101,8 @@ static void assert_same(void **state, const char *a, int frame_a, const char *b,
     image_destroy(&second);
 }
 
-// A second round shows what the first one showed: the frame after the last is the first. Light goes
-// by --speed 0: the wind of the warm-up stands still, too.
+// A second turn shows the same images as the first: the frame after the last equals the first.
+// --speed 0 also stops the wind of the warm-up.
 static void still_hair_loops_to_the_byte(void **state)
 {
     const char *hair = "assets/curls.tfx --wind 4,0,0 --preroll 0.3 --speed 0 --ease-in 0";
@@ -115,7 +114,7 @@ static void still_hair_loops_to_the_byte(void **state)
     for (int frame = 0; frame < 10; ++frame) assert_same(state, "once", frame % 5, "twice", frame);
 }
 
-// Each tile is the picture that the frame has by itself.
+// Each tile equals the frame's own image.
 static void a_contact_sheet_shows_the_frames(void **state)
 {
     enum { COLUMNS = 3, ROWS = 2 };

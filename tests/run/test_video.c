@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Videos by the real ffmpeg; what happens when it fails is in test_output.c.
+// Videos by the real ffmpeg; failures of ffmpeg are tested in test_output.c.
 #include "base/bytes.h"
 #include "run/video.h"
 #include "support/temporary.h"
@@ -21,7 +21,7 @@ static void need_ffmpeg(void)
     skip();
 }
 
-// Every frame is of one grey, 20 levels apart, which survives any encoder.
+// Each frame has one grey; frames differ by 20 levels, which survives any encoder.
 static int grey_of_frame(int frame)
 {
     return 20 + 20 * frame;
@@ -51,8 +51,7 @@ static void write_video(const char *path, int channels)
     bytes_destroy(&file);
 }
 
-// Runs a command with the file's name at its end and returns what it prints, at most size - 1
-// bytes.
+// Runs a command with the file's name at its end and returns its output, size - 1 bytes at most.
 static size_t run(const char *command, const char *path, const char *tail, char *text, size_t size)
 {
     char line[1200];
@@ -75,8 +74,7 @@ static void assert_streams(const char *path, const char *expected)
     assert_string_equal(text, expected);
 }
 
-// Decodes to one grey byte a pixel and compares each frame's corners, also those that padding
-// added.
+// Decodes to one grey byte per pixel and compares each frame's corners, including padding.
 static void assert_greys(const char *path, int width, int height)
 {
     size_t frame_size = (size_t)(width * height), size = frame_size * (FRAMES + 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Automatic cameras: hair stays in the frame, whatever it does, and fills it.
+// Automatic cameras: hair stays in the frame whatever moves, and fills the frame.
 #include "scene/camera.h"
 #include "strands/paint.h"
 
@@ -14,7 +14,7 @@
 
 enum { STRANDS = 40, VERTICES = 6 };
 
-// A tuft on a ball of 0.1 m, strands of 0.3 m, all scaled.
+// A tuft of strands of 0.3 m on a ball of 0.1 m, scaled.
 static Strands make_tuft(float scale)
 {
     Error error;
@@ -71,7 +71,8 @@ static void view_of(Shot *shot, int frame, View *view)
     camera_view(view, &shot->scene, &shot->framing, frame);
 }
 
-// Largest |x/w| or |y/w| of the strands, carried by `translation`; all must be between the planes.
+// The largest |x/w| or |y/w| of strands moved by `translation`; all must lie between the near and
+// far planes.
 static float extent_in_frame(const Shot *shot, const View *view, const float translation[3])
 {
     float most = 0;
@@ -89,8 +90,8 @@ static float extent_in_frame(const Shot *shot, const View *view, const float tra
 
 static const float STILL[3] = {0, 0, 0};
 
-// Hair in a level line that is a point from 45 degrees to the camera's right before it turns, and
-// broadside from 45 to its left (`side` 1), or the other way round (-1).
+// Puts all hair on a horizontal line. Seen 45 degrees from the camera's right, it is a point, and
+// from 45 degrees to the left it has its full width (`side` 1), or the other way round (-1).
 static void lay_aslant(Shot *shot, float side)
 {
     Strands *strands = &shot->strands;
@@ -105,11 +106,11 @@ static void lay_aslant(Shot *shot, float side)
     }
 }
 
-// What may move in 120 frames of 2 s; the rest is 0.
+// Motion within 120 frames of 2 s; the rest is 0.
 typedef struct Motion {
     const char *name;
     float turntable, aslant;
-    float head_from, head_to[3]; // where the head is at 2 s, at 0 until `head_from` (s)
+    float head_from, head_to[3]; // position at 2 s; it is at 0 until `head_from` (s)
     float fov[3];                // at 0, 1 and 2 s (deg)
 } Motion;
 
@@ -133,7 +134,7 @@ static void open_motion(Shot *shot, const Motion *motion)
     open_shot(shot, 1);
     shot->section.params.style = 1;
     shot->scene.run.turntable = motion->turntable;
-    shot->section.params.followers.automatic = false; // nothing beside the strands
+    shot->section.params.followers.automatic = false; // only the strands
     shot->section.params.followers.value = 0;
     if (motion->aslant != 0) lay_aslant(shot, motion->aslant);
     Keyframes *track = &shot->scene.bodies[0].head.translation;
@@ -165,7 +166,7 @@ static void hair_stays_in_the_frame_and_fills_it(void **state)
     }
 }
 
-// Loose hair falls out of its style: the camera leaves room below.
+// Loose hair falls out of its style: the camera must leave space below.
 static void room_is_left_for_hair_that_falls(void **state)
 {
     (void)state;
@@ -197,8 +198,9 @@ static void turntable_keeps_its_distance_and_comes_round(void **state)
                     1e-5f * distance);
         assert_true(fabsf(view.eye[1] - first.eye[1]) < 1e-5f * distance);
     }
-    assert_true(glm_vec3_distance(view.eye, first.eye) < 1e-5f * distance); // frame 120 is frame 0
-    view_of(&shot, 30, &view); // a quarter: from the front by way of +x
+    // frame 120 equals frame 0
+    assert_true(glm_vec3_distance(view.eye, first.eye) < 1e-5f * distance);
+    view_of(&shot, 30, &view); // a quarter turn: from the front past +x
     assert_true(view.eye[0] > shot.framing.target[0] && view.eye[2] < first.eye[2]);
     close_shot(&shot);
 }
@@ -283,7 +285,7 @@ static void every_camera_is_finite(void **state)
                 assert_true(isfinite(view.view[i / 4][i % 4]));
                 assert_true(isfinite(view.projection[i / 4][i % 4]));
             }
-            mat3 turn, product; // the view is a rotation
+            mat3 turn, product; // the view must be a rotation
             glm_mat4_pick3(view.view, turn);
             assert_true(fabsf(glm_mat3_det(turn) - 1) < 1e-4f);
             glm_mat3_transpose_to(turn, product);
@@ -294,7 +296,7 @@ static void every_camera_is_finite(void **state)
         }
 }
 
-// They are as far from their guides as the radius says.
+// Followers are up to the radius away from their guides.
 static void room_is_left_for_followers(void **state)
 {
     (void)state;
@@ -326,7 +328,8 @@ static void of_an_empty_scene_the_planes_are_in_order(void **state)
     close_shot(&shot);
 }
 
-// 20 degrees off the axis the picture is still upright; on it another direction is up.
+// 20 degrees from the vertical, the image is still upright; exactly along it, another direction is
+// up.
 static void up_is_kept_as_long_as_it_can_be(void **state)
 {
     (void)state;
@@ -338,7 +341,7 @@ static void up_is_kept_as_long_as_it_can_be(void **state)
     memcpy(shot.scene.run.target.value, (float[3]){0, 0, 0}, sizeof(float[3]));
     memcpy(shot.scene.run.eye.value, (float[3]){0.342f, 0.94f, 0}, sizeof(float[3]));
     view_of(&shot, 0, &view);
-    // The picture's top direction is row 1 of the view.
+    // Row 1 of the view is the image's up direction.
     assert_true(fabsf(view.view[1][1] - 0.342f) < 1e-3f && view.view[0][1] < -0.9f);
     close_shot(&shot);
 }
@@ -361,7 +364,7 @@ static void denser_hair_is_drawn_finer(void **state)
     strands_destroy(&many);
 }
 
-// All hair lies between the ends of the range in all frames, and they are not far from it.
+// All hair lies between the near and far depth in all frames, and the two are close to the hair.
 static void depths_span_the_scene(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light from all around, as an equirectangular image has it: where its pixels lie, and what
-// surfaces and directions get of them.
+// Environment light from an equirectangular image: the directions of its pixels, and the light on
+// surfaces and in directions of the light grid.
 #include "scene/environment.h"
 
 #include "base/random.h"
@@ -36,7 +36,7 @@ static Environment make(void)
     return environment;
 }
 
-// Spread evenly: a spiral of Fibonacci.
+// Directions that are spread evenly by a Fibonacci spiral.
 static void find_ways(float way[WAYS][3])
 {
     for (int i = 0; i < WAYS; ++i) {
@@ -46,7 +46,7 @@ static void find_ways(float way[WAYS][3])
     }
 }
 
-// As the renderer has it.
+// Evaluates the polynomial like the renderer.
 static double shown(float terms[ENVIRONMENT_TERMS][3], int c, const float n[3])
 {
     float even = lamp_around(terms[0][c] + terms[1][c], terms[0][c] - terms[1][c], n[1]);
@@ -55,7 +55,7 @@ static double shown(float terms[ENVIRONMENT_TERMS][3], int c, const float n[3])
                               n[1], n[2]));
 }
 
-// The integral over the hemisphere, over pi.
+// Integral over the hemisphere, divided by pi.
 static double exact(const Environment *environment, int c, const float n[3])
 {
     double sum = 0;
@@ -67,7 +67,7 @@ static double exact(const Environment *environment, int c, const float n[3])
     return sum;
 }
 
-// --- Claims.
+// --- Tests.
 
 static void the_image_lies_as_one_sees_it(void **state)
 {
@@ -92,7 +92,8 @@ static void the_image_lies_as_one_sees_it(void **state)
                 sum[k] += part * (double)environment.parts[p].way[k];
                 light += part / 3;
             }
-        // Its middle is half of its 11 degrees away on each axis, and its light spread over them.
+        // The spot is 11 degrees wide; its middle is off by half of that on each axis, and its
+        // light is spread over it.
         double cosine = 0;
         for (int k = 0; k < 3; ++k) cosine += sum[k] / light * (double)places[i].way[k];
         assert_true(cosine > cos(0.17));
@@ -116,8 +117,8 @@ static void an_even_one_is_as_bright_on_all_sides(void **state)
     environment_destroy(&environment);
 }
 
-// Light from one direction, at the cosine c, is (1 + 2 c + 5/8 (3 c^2 - 1)) of its mean, where
-// Lambert's law has 4 c (Ramamoorthi and Hanrahan 2001).
+// For light from one direction at cosine c, the polynomial is (1 + 2 c + 5/8 (3 c^2 - 1)) times the
+// mean, where Lambert's law has 4 c (Ramamoorthi and Hanrahan 2001).
 static void a_spot_shows_as_its_polynomial(void **state)
 {
     (void)state;
@@ -142,14 +143,15 @@ static void a_spot_shows_as_its_polynomial(void **state)
         double c = 0;
         for (int k = 0; k < 3; ++k) c += to[k] / sqrt(length) * (double)way[d][k];
         double expected = mean * (1 + 2 * c + 0.625 * (3 * c * c - 1));
-        // The spot is 11 degrees wide: its mean square differs by a hundredth.
+        // The spot is 11 degrees wide, which changes the mean square by a hundredth.
         assert_true(fabs(shown(terms, 2, way[d]) - expected) < 0.02 * mean);
         assert_true(fabs(shown(terms, 0, way[d])) < 1e-9);
     }
     environment_destroy(&environment);
 }
 
-// Of light as it comes, soft boxes in a room, the polynomial is within 5 % of the brightest side.
+// In typical light, soft boxes in a room, the polynomial errs by less than 5 % of the brightest
+// side.
 static void surfaces_show_nearly_the_exact_light(void **state)
 {
     (void)state;
@@ -177,8 +179,8 @@ static void directions_keep_all_light(void **state)
     find_ways(way);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; ++i)
         ((float *)pixels)[i] = (float)random_below(&random, 1000) * 1e-3f;
-    pixels[9][7][0] = 300; // a sun, brighter than all the rest
-    pixels[1][1][1] = -50; // no light
+    pixels[9][7][0] = 300; // a sun, much brighter than the rest
+    pixels[1][1][1] = -50; // negative: not light
     Environment environment = make();
     environment_spread(&environment, &LEVEL, (const float(*)[3])way, WAYS, light);
     for (int c = 0; c < 3; ++c) {
@@ -201,7 +203,7 @@ static void directions_keep_all_light(void **state)
     environment_destroy(&environment);
 }
 
-// The environment turned is the image shifted.
+// Turning the environment equals shifting the image.
 static void a_turn_shifts_the_image(void **state)
 {
     (void)state;

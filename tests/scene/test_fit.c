@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The camera that fits: seen through it, points reach the margin and never cross it.
+// The fitting camera: in its view, points reach the margin and never cross it.
 #include "scene/camera.h"
 #include "scene/fit.h"
 
@@ -18,10 +18,11 @@ enum { POINTS = 300, FRAMES = 90 };
 typedef struct Shot {
     Scene scene;
     Framing framing;
-    float sway; // m, of the points over the sequence
+    float sway; // m, motion of the points over the sequence
 } Shot;
 
-// A crooked cloud, far from the origin, with a spike: no box or ball is a good guess of it.
+// An irregular cloud far from the origin with a spike, so that neither a box nor a ball
+// approximates it well.
 static void point_at(const Shot *shot, int frame, int i, float point[3])
 {
     float a = 2.4f * (float)i, h = (float)i / POINTS, r = 0.1f + 0.3f * h * h;
@@ -42,7 +43,7 @@ static void open_shot(Shot *shot)
     assert_int_equal(params_create_run(&shot->scene.run, &error), RESULT_OK);
     shot->scene.run.frames = FRAMES;
     shot->scene.run.turntable = 360;
-    // As outline_frame leaves it, but with an eye that is far too near.
+    // As outline_frame leaves it, but with the eye far too near.
     for (int i = 0; i < POINTS; ++i) {
         float point[3];
         point_at(shot, 0, i, point);
@@ -74,8 +75,7 @@ static void fit(Shot *shot, float radius)
     fit_destroy(&fit);
 }
 
-// The largest |x| and |y| in all frames, 1 at their edges, of points that are moved
-// by `radius` to each side.
+// The largest |x| and |y| of points with this radius in all frames; 1 is the edge of the image.
 static void find_extent(const Shot *shot, float radius, float most[2])
 {
     most[0] = most[1] = 0;
@@ -95,7 +95,7 @@ static void find_extent(const Shot *shot, float radius, float most[2])
     }
 }
 
-// Floats of this size are good for 1e-6 of the distance.
+// Floats of this size are accurate to 1e-6 of the distance.
 static void check_margin(Shot *shot, float radius)
 {
     float most[2], edge = 1 / (1 + shot->scene.run.margin);
@@ -142,10 +142,10 @@ static float distance_of(const Shot *shot)
     return glm_vec3_distance((float *)shot->framing.eye, (float *)shot->framing.target);
 }
 
-// No target nearby, 1.5 to 20 mm off, lets the camera come nearer: none higher or lower, and where
-// only the sides count, in a narrow frame taken from the height of the target, none beside it. The
-// target is found to 1e-5 of the search's range, here 4 m, and the distance changes by at most 40
-// times as much (scale / slope).
+// Tests that no target 1.5 to 20 mm away brings the camera closer: vertically, and horizontally if
+// only the sides limit the distance, which is the case in a narrow frame seen from the height of
+// the target. The target is accurate to 1e-5 of the search's range, 4 m here, and the distance
+// changes by at most 40 times as much (scale / slope).
 static void of_whole_turns_the_target_is_the_best_one(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The height at which the floor lies.
+// The floor's height and extent.
 #include "scene/floor.h"
 
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Gravity and wind at a time.
+// Gravity and wind over time.
 #include "scene/forces.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ static void four_winds_turn_by_the_spread_and_keep_the_mean(void **state)
     scene_destroy(&scene);
 }
 
-// Whatever the period: it is changed to fit, by no more than half of one in the whole time.
+// With any period of repetition: gusts are adapted to it by at most half a wave per period.
 static void gusts_repeat_if_told(void **state)
 {
     (void)state;
@@ -79,8 +79,8 @@ static void gusts_repeat_if_told(void **state)
     scene_destroy(&scene);
 }
 
-// Each of the three sines is changed to the nearest whole number of waves in that time: 3.64, 8.4
-// and 18.8 of them to 4, 8 and 19.
+// Each of the three sines gets the nearest whole number of waves in that time: 3.64, 8.4 and 18.8
+// waves become 4, 8 and 19.
 static void gusts_that_repeat_keep_nearly_their_rates(void **state)
 {
     (void)state;
@@ -115,7 +115,7 @@ static double spread_of(float asked_deg)
     return atan2(hypot((double)w[1], (double)w[2]), (double)w[0]) * 180 / 3.14159265358979;
 }
 
-// A right angle would need an infinite wind.
+// A right angle would require infinite wind.
 static void the_spread_ends_just_before_a_right_angle(void **state)
 {
     (void)state;

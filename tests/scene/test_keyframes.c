@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tracks of keys, smooth and straight.
+// Tracks of keys with smooth and linear interpolation.
 #include "scene/keyframes.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ static double at(const Keyframes *keys, double time)
     return (double)value;
 }
 
-// Uneven times; a rise, a held value, a fall and a turn.
+// Uneven times, with a rise, a constant part, a fall and a turning point.
 static const Sample SAMPLES[] = {{-1, 2}, {0, 3}, {0.1, 7}, {2, 7}, {3, -1}, {3.5, -0.5f}, {9, 4}};
 enum { SAMPLE_COUNT = sizeof SAMPLES / sizeof SAMPLES[0] };
 
@@ -78,9 +78,9 @@ static void smooth_never_leaves_the_range_of_its_two_keys(void **state)
     keyframes_destroy(&keys);
 }
 
-// Across a key the one-sided slopes agree; linear interpolation, whose slopes jump there, proves
-// that the comparison can fail. With h = 1e-3 s and values below 8, rounding to float moves a slope
-// by 8 * 2^-24 / 1e-3 < 1e-3, curvature (at most 6 * 4 / 0.1^2 per s2) by 2.4.
+// At a key, the slopes on both sides agree. Linear interpolation, whose slope jumps there, shows
+// that the test can fail. With h = 1e-3 s and values below 8, rounding to float changes a slope by
+// 8 * 2^-24 / 1e-3 < 1e-3, and curvature (at most 6 * 4 / 0.1^2 per s2) by 2.4.
 static double slope_jump(Interpolation interpolation)
 {
     Keyframes keys = make_track(SAMPLES, SAMPLE_COUNT, interpolation);
@@ -102,10 +102,9 @@ static void smooth_has_no_jump_in_velocity_even_at_its_ends(void **state)
     assert_true(slope_jump(INTERPOLATION_LINEAR) > 30);
 }
 
-// In the middle of an interval a cubic Hermite curve is h/8 (slope before - slope behind) from the
-// mean of its ends. Slopes as the paper has them: G = S1 S2 / (a S2 + (1 - a) S1), a = (1 + h2 /
-// (h1
-// + h2)) / 3 with the rises S by seconds of intervals of h1 and h2 seconds.
+// In the middle of an interval, a cubic Hermite curve is h/8 (slope before - slope behind) from the
+// mean of its ends. Slopes as in the paper: G = S1 S2 / (a S2 + (1 - a) S1) with a = (1 + h2 / (h1
+// + h2)) / 3, where S is the slope between keys and h the length of an interval in seconds.
 static void smooth_has_the_slopes_of_fritsch_and_butland(void **state)
 {
     (void)state;

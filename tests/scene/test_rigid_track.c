@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The head's motion by keys and by formulas.
+// Motion of the head by keys and by formulas.
 #include "scene/rigid_track.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 static const float PI = 3.14159265f;
 
-// The point where the track takes `point`, by the quaternion's matrix.
+// Moves `point` by the track's motion, by means of the quaternion's matrix.
 static void move(const RigidTrack *track, double time, const float point[3], float moved[3])
 {
     float q[4], t[3];
@@ -108,7 +108,7 @@ static void set_formulas(Formula formulas[3], const char *x, const char *y, cons
         assert_int_equal(formula_create(&formulas[i], texts[i], &error), RESULT_OK);
 }
 
-// A single key holds for ever; two of a turn alone move.
+// A single key is constant; two keys of the rotation alone are a motion.
 static void only_two_keys_of_either_kind_move(void **state)
 {
     (void)state;

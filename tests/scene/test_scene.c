@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: every key read and written, errors.
+// Scene files: every key is read and written; errors.
 #include "base/random.h"
 #include "support/scene_reader.h"
 #include "support/temporary.h"
@@ -19,7 +19,8 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     Scene scene;
     Error error;
     assert_int_equal(scene_read(&scene, "tests/data/scene_full.json", &error), RESULT_OK);
-    assert_int_equal(scene.run.scalp, SCALP_NONE); // it says what there is
+    // nothing is added that the scene file does not name
+    assert_int_equal(scene.run.scalp, SCALP_NONE);
     assert_int_equal(scene.run.frames, 90);
     assert_int_equal(scene.run.size[0], 640);
     assert_true(scene.run.background[3] == 0);
@@ -59,7 +60,7 @@ static void a_section_overrides_the_top_level_and_flags_override_both(void **sta
     Scene scene;
     assert_read(&scene, "tests/data/scene_full.json");
     assert_true(scene.sections[0].params.style == 0.75f);
-    assert_true(scene.sections[1].params.style == 0.5f); // nobody says: the default
+    assert_true(scene.sections[1].params.style == 0.5f); // not given: the default
     assert_true(scene.sections[1].params.drag == 2);
     assert_true(scene.sections[0].params.color[0] == 64 / 255.0f);
     assert_true(scene.sections[1].params.color[0] == 0.5f);
@@ -129,8 +130,8 @@ static void a_preset_gives_way_to_what_is_said(void **state)
     scene_destroy(&scene);
 }
 
-// A scene file's look counts like a flag's, and a flag's instead of it; what the file says besides
-// wins over both.
+// A scene file's look acts like that of a flag, and a flag replaces it. The other keys of the file
+// take precedence over both.
 static void a_look_is_said_by_the_scene_file_too(void **state)
 {
     Scene scene;
@@ -166,7 +167,7 @@ static void a_look_is_said_by_the_scene_file_too(void **state)
     scene_destroy(&scene);
 }
 
-// Those of the studio stand around the automatic camera: 25 degrees to the side, 10 above.
+// The studio's lights stand around the automatic camera: 25 degrees to the side, 10 degrees up.
 static void lights_stand_around_the_automatic_camera(void **state)
 {
     (void)state;
@@ -244,7 +245,7 @@ static void assert_written_again(void **state, const Scene *scene)
     Scene again;
     Error error = {{0}};
     char *text = dump(scene);
-    // Relative paths would be read as relative to the folder of the copy.
+    // The copy's relative paths would be relative to the copy's folder.
     char *folder;
     while ((folder = strstr(text, "tests/data/"))) memcpy(folder, "/////////////", 11);
     if (read_scene(state, &again, text, &error) != RESULT_OK) fail_msg("%s", error.text);
@@ -255,7 +256,7 @@ static void assert_written_again(void **state, const Scene *scene)
     scene_destroy(&again);
 }
 
-// Tracks of one object whose keys stand at different times.
+// Tracks of one object with keys at different times.
 static void keys_are_written_at_their_own_times(void **state)
 {
     Scene scene, again;
@@ -296,8 +297,8 @@ static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
     scene_destroy(&scene);
 }
 
-// To the bit: directions of light in all places, of which a few in a hundred would move by one unit
-// if they were made unit vectors again.
+// Exactly: if directions of light were normalised again, a few in a hundred would change by one
+// unit in the last place.
 static void directions_of_light_are_read_as_they_were_written(void **state)
 {
     enum { COUNT = 200 };
@@ -484,7 +485,7 @@ static void every_truncation_of_a_scene_file_is_refused(void **state)
     }
 }
 
-// `before`, `count` times `unit`, `after`.
+// Returns `before`, `count` times `unit`, then `after`.
 static char *repeat(const char *before, const char *unit, size_t count, const char *after)
 {
     size_t length = strlen(unit);
@@ -507,7 +508,7 @@ static void deep_and_huge_files_are_refused_in_one_short_line(void **state)
         repeat("{" HAIR ", \"head\": \"", "\xc3\xa4", 100000, "\"}"),
         repeat("{\"sections\": [{\"file\": \"a\"}", ",{\"file\": \"a\"}", 100000, "]}"),
     };
-    // Balanced, and as deep as the parser allows.
+    // Balanced brackets, as deep as the parser allows.
     char *closed = repeat(texts[2], "]", 2000, "}");
     free(texts[2]);
     texts[2] = closed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes from the command line; every parameter from both sources.
+// Scenes from the command line; every parameter from command line and scene file.
 #include "base/decimal.h"
 #include "scene/effects.h"
 #include "scene/scene_param.h"
@@ -28,7 +28,7 @@ static void assert_prints(Scene *scene, const ParamInfo *info, const char *expec
     free(text);
 }
 
-// A valid value that is not the default and, alone, in no conflict with another.
+// A valid value that differs from the default and causes no conflict by itself.
 static const char *sample(const ParamInfo *info, char text[64])
 {
     static const char *const TEXTS[] = {
@@ -54,7 +54,7 @@ static const char *sample(const ParamInfo *info, char text[64])
     return text;
 }
 
-// Options without which some others have no effect, which is an error.
+// Options that some other options require; without them, those have no effect, which is an error.
 static const char *find_condition(const ParamInfo *info)
 {
     static const struct {
@@ -87,7 +87,7 @@ static const char *find_condition(const ParamInfo *info)
     return "";
 }
 
-// A flag of the condition, or of the line that all have.
+// Whether the flag is in the conditions or in the line that all cases share.
 static bool is_said(const ParamInfo *info, const char *line)
 {
     char flag[64];
@@ -96,7 +96,7 @@ static bool is_said(const ParamInfo *info, const char *line)
     return strstr(line, flag) || strcmp(info->name, "output") == 0;
 }
 
-// Whether a default of `other` gives way to `info`, or to what that needs beside it.
+// Whether the default of `other` changes if `info` is given, or if what `info` requires is given.
 static bool gives_way(const ParamInfo *other, const ParamInfo *info)
 {
     static const struct {
@@ -120,7 +120,7 @@ static void every_row_is_set_by_its_flag_and_by_nothing_else(void **state)
         char buffer[64], name[64], line[300], said[100];
         const char *value = sample(info, buffer);
         if (strcmp(info->name, "quality") == 0 || strcmp(info->name, "look") == 0)
-            continue; // which stand for several
+            continue; // they stand for several parameters
         snprintf(name, sizeof name, "%s", info->name);
         for (char *at = name; *at; at++) *at = *at == '_' ? '-' : *at;
         for (int form = 0; form < 2; form++) {
@@ -266,8 +266,8 @@ static void one_name_is_one_frame(void **state)
         {"a.tfx -o x.pfm --first 30", 30, 30, 120},
         {"a.tfx -o x.png --first 119", 119, 119, 120},
         {"a.tfx -o x.png --turntable --first 45", 45, 45, 180},
-        {"a.tfx -o x.png --last 3", 0, 3, 120},         // one name for several, refused later
-        {"a.tfx -o x.png --frames 20", 0, -1, 20},      // the same
+        {"a.tfx -o x.png --last 3", 0, 3, 120},    // one name for several images: refused later
+        {"a.tfx -o x.png --frames 20", 0, -1, 20}, // the same
         {"a.tfx -o x.png --cache y.cache", 0, -1, 120}, // the cache holds all frames
         {"a.tfx -o x.png --contact-sheet 3x2", 0, -1, 120},
         {"a.tfx -o x_%d.png", 0, -1, 120},
@@ -283,7 +283,7 @@ static void one_name_is_one_frame(void **state)
     }
 }
 
-// Of the colours of a file and the scene's, and of opacities, what is named more closely counts.
+// A file's colours compete with the scene's, and so do opacities: the more specific statement wins.
 static void colors_of_files_give_way_to_what_is_named(void **state)
 {
     static const struct {
@@ -324,8 +324,8 @@ static void colors_of_files_give_way_to_what_is_named(void **state)
     }
 }
 
-// Of color, transmission and melanin the one that is named more closely counts, and what it
-// replaces changes no more.
+// Of color, transmission and melanin the most specific statement wins, and the replaced ones no
+// longer change over time.
 static void a_color_ends_what_it_replaces(void **state)
 {
 #define KEYS(at_0, at_1)                                                                           \
@@ -334,7 +334,7 @@ static void a_color_ends_what_it_replaces(void **state)
 #define GREEN "\"#00ff00\""
     static const struct {
         const char *keys, *shared, *flags;
-        bool transmission, melanin; // whether they count
+        bool transmission, melanin; // whether they have an effect
         uint32_t tracks;
     } CASES[] = {
         {", \"transmission\": " RED, "", " --color blond", false, false, 0},
@@ -485,7 +485,7 @@ static void flags_without_effect_are_refused(void **state)
     for (size_t i = 0; i < sizeof LINES / sizeof LINES[0]; i++)
         assert_refused(LINES[i].line, RESULT_USAGE, LINES[i].message);
     Scene scene;
-    assert_read(&scene, "a.tfx -o x/ --lod-width 1 --lod-min 0.5"); // one of two is enough
+    assert_read(&scene, "a.tfx -o x/ --lod-width 1 --lod-min 0.5"); // one of the two suffices
     scene_destroy(&scene);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parameters of a section by keys and formulas: reading, what may not change, flags, writing back.
+// Parameters of a section by keys and formulas: reading, parameters that may not change, flags,
+// writing.
 #include "scene/scene.h"
 #include "support/temporary.h"
 
@@ -41,7 +42,7 @@ static void keys_and_formulas_give_values(void **state)
     SectionParams params = scene.sections[0].params;
     const SectionTracks *tracks = &scene.sections[0].tracks;
     assert_int_equal(tracks->count, 4);
-    // As at time 0.
+    // The values at time 0.
     assert_true(params.style == 0.5f && params.drag == 3 && params.color[0] == 1);
     assert_true(!params.melanin.automatic && params.melanin.value == 1);
     uint64_t stamp = section_tracks_stamp(tracks, &params);
@@ -53,7 +54,7 @@ static void keys_and_formulas_give_values(void **state)
     assert_true(section_tracks_stamp(tracks, &params) == stamp);
     section_tracks_greatest(tracks, 2, 61, &params);
     assert_true(params.style == 0.5f && params.drag == 5);
-    // A written scene reads the same.
+    // The scene can be written and read back.
     json_t *json = scene_to_json(&scene),
            *section = json_array_get(json_object_get(json, "sections"), 0);
     assert_string_equal(
@@ -92,7 +93,7 @@ static void a_flag_replaces_keys(void **state)
     scene_destroy(&scene);
 }
 
-// Every number may change, or there is a reason why not.
+// Every number may change over time, unless a documented reason forbids it.
 static void what_cannot_change_is_refused_with_a_reason(void **state)
 {
     for (size_t i = 0; i < PARAM_COUNT; ++i) {

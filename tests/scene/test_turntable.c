@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a turntable turns.
+// The angle of a turntable over time.
 #include "scene/camera.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static RunParams table(float turn, float ease_in, float ease_out)
         .frames = FRAMES, .turntable = turn, .ease_in = ease_in, .ease_out = ease_out};
 }
 
-// Degrees from frame to frame + 1; a whole turn may lie between them.
+// Degrees from this frame to the next, modulo a full turn.
 static double step_at(const RunParams *run, int frame)
 {
     return remainder(camera_turntable_deg(run, frame + 1) - camera_turntable_deg(run, frame), 360);
@@ -40,9 +40,9 @@ static void whole_turns_come_back_to_the_bit(void **state)
         }
 }
 
-// The step over the seam is no larger than the largest between neighbours, but for an ease-in that
-// lasts to the end: it goes on growing there, by less than 3 / FRAMES of itself. With an ease-out
-// it is among the smallest.
+// The step from the last frame to the first is not larger than the largest step between frames. If
+// an ease-in lasts to the end, the step still grows there, by less than 3 / FRAMES of itself. With
+// an ease-out, the step is among the smallest.
 static void no_jump_at_the_seam(void **state)
 {
     (void)state;
@@ -55,9 +55,9 @@ static void no_jump_at_the_seam(void **state)
     }
 }
 
-// Without eases a turn is even. With them it starts from standing, its steps grow to a constant
-// one and shrink again, and differ from one to the next by no more than the curve's greatest
-// acceleration: v 3/2 a share of the ease, v = 360 / (1 - (a + b) / 2).
+// Without easing, a turn is even. With easing, steps grow from 0 to a constant step and shrink
+// again. Neighbouring steps differ by no more than the curve's greatest acceleration: v times 3/2
+// divided by the ease's length, with v = 360 / (1 - (a + b) / 2).
 static void eases_speed_up_and_slow_down(void **state)
 {
     (void)state;
@@ -95,7 +95,7 @@ static void the_camera_of_the_next_round_is_that_of_the_first(void **state)
     }
 }
 
-// Seen from the camera, light comes from where it came in the first frame.
+// Lights keep their directions relative to the camera.
 static void lights_turn_with_the_camera(void **state)
 {
     (void)state;
