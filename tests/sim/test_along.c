@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parameters that differ along the strand, in every solver that takes them.
+// Parameters that vary along the strand, in every solver that supports it.
 #include "support/hair_fixture.h"
 #include "support/simulation_fixture.h"
 
@@ -15,14 +15,14 @@ enum { SECTIONS_PARAMS = 4, FRAMES = 20 };
 
 typedef float Float3[3];
 
-// Positions after some frames with the parameters as flags have them: "style", "0.5", NULL.
+// Positions after some frames with parameters given like flags: "style", "0.5", NULL.
 static Float3 *simulate(const char *algo, const char *variant, const char *const *settings,
                         uint64_t *count)
 {
     SimulationFixture fixture;
     Error error;
     simulation_fixture_create(&fixture, algo, variant);
-    fixture.scene.sections[0].params.rest = REST_HANGING; // lets it feel gravity
+    fixture.scene.sections[0].params.rest = REST_HANGING; // so that gravity moves the hair
     for (; *settings; settings += 2)
         assert_int_equal(params_parse(params_find(settings[0]), &fixture.scene.sections[0].params,
                                       settings[1], &error),
@@ -53,8 +53,8 @@ static double farthest(const char *algo, const char *variant, const char *const 
 static const char *const PLAIN[] = {
     "style", "0.6", "style-stiffness", "150", "drag", "2", "gravity-share", "0.7", NULL};
 
-// Rounding differs (products that one form takes once and the other for each vertex), and grows
-// along 20 steps.
+// Rounding differs, because one form multiplies once and the other for each vertex, and the
+// difference grows over 20 steps.
 static void check_constant(const char *algo, const char *variant)
 {
     static const char *const constant[] = {"style",           "0.6:0.6", "style-stiffness",
@@ -91,15 +91,15 @@ static void check_each(const char *algo, const char *variant)
     }
 }
 
-// Published forms, and split's tip, take the mean, which is PLAIN's.
+// Published algorithms and split's tip use the mean, which PLAIN has.
 static void every_solver_takes_what_it_says(void **state)
 {
     (void)state;
     simulation_fixture_each(check_each);
 }
 
-// How far vertex 2 of the strands of eight vertices (which come first) has gone from a rigid groom,
-// over how far their tips have.
+// How far vertex 2 of the strands of eight vertices (the first ones) has moved from a stiff groom,
+// relative to their tips.
 static double root_over_tip(const char *const *settings)
 {
     enum { N = 8, STRANDS = 10 };

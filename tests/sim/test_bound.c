@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair that is bound to a mesh that deforms.
+// Hair bound to a deforming mesh.
 #include "sim/simulation_state.h"
 #include "support/body_fixture.h"
 
@@ -11,11 +11,10 @@
 
 #include <cmocka.h>
 
-// The turn and the place of a head that nods and turns about a pivot of its own.
+// Rotation and position of a head that nods and turns about a pivot.
 static void pose_of(double time, double *angle, double place[3])
 {
-    *angle =
-        0.5 * (1 - cos(4 * time)); // no third derivative at 0, which the first spline's end needs
+    *angle = 0.5 * (1 - cos(4 * time)); // the third derivative at 0 must be 0 for the first spline
     place[0] = 0.05 * (1 - cos(3 * time)), place[1] = 0.02 * time * time, place[2] = -0.1 * time;
 }
 
@@ -92,8 +91,8 @@ static void check_rigid(const char *algo, const char *variant)
         simulation_fixture_go(&bound.base, frame);
         simulation_fixture_go(&tracked, frame);
         double apart = farthest_apart(&bound, &tracked);
-        // The first spline's slope at time 0 is off by h^3 f""/4 = 1.5e-4 rad/s, which is 1e-5 m at
-        // strands 0.3 m from the pivot after 0.2 s; places at 1.6 m are rounded by 1e-7 m.
+        // The first spline's slope at time 0 errs by h^3 f""/4 = 1.5e-4 rad/s, which is 1e-5 m on
+        // strands 0.3 m from the pivot after 0.2 s; positions at 1.6 m are rounded by 1e-7 m.
         if (!(apart < 2e-5)) fail_msg("%s %s: frame %d: %g m apart", algo, variant, frame, apart);
     }
     body_fixture_destroy(&bound);
@@ -106,7 +105,7 @@ static void rigid_samples_are_a_head_track(void **state)
     simulation_fixture_each(check_rigid);
 }
 
-// Evenly about the pivot.
+// A constant rotation about the pivot.
 static void turning(double time, const double rest[3], double place[3])
 {
     double c = cos(2 * time), s = sin(2 * time), x = rest[0] - PIVOT[0], z = rest[2] - PIVOT[2];
@@ -115,8 +114,8 @@ static void turning(double time, const double rest[3], double place[3])
     place[2] = PIVOT[2] - s * x + c * z;
 }
 
-// Samples at other times than steps, from before the start on: a screw motion between two of them
-// is exact.
+// Samples lie between steps and start before time 0: interpolation by a screw motion is exact for
+// this rotation.
 static void an_even_turn_is_exact_between_samples(void **state)
 {
     (void)state;
@@ -124,7 +123,7 @@ static void an_even_turn_is_exact_between_samples(void **state)
     SimulationFixture tracked;
     body_fixture_create(&bound, "chain", "", turning, 24, -0.05, 20);
     create_turning(&tracked, "chain");
-    // Time 0 is no sample: the groom is on the mesh as it is then.
+    // Time 0 is between samples: the groom is attached to the mesh at that time.
     HeadPose start = head_at(&bound.base.scene.bodies[0].head, 0);
     for (int k = 0; k < 3; ++k)
         assert_true(fabsf(start.rotation[k]) < 1e-7f && fabsf(start.translation[k]) < 1e-7f);
@@ -133,14 +132,15 @@ static void an_even_turn_is_exact_between_samples(void **state)
     for (int frame = 0; frame <= 24; frame += 8) {
         simulation_fixture_go(&bound.base, frame);
         simulation_fixture_go(&tracked, frame);
-        // Vertices at 1.6 m, rounded by 6e-8 m, make 4e-5 rad of frames at 0.25 m of strand.
+        // Rounding of vertices at 1.6 m by 6e-8 m rotates frames by 4e-5 rad, which moves 0.25 m of
+        // strand.
         assert_true(farthest_apart(&bound, &tracked) < 1e-5);
     }
     body_fixture_destroy(&bound);
     simulation_fixture_destroy(&tracked);
 }
 
-// --- What only a mesh that deforms can do.
+// --- Motion that only a deforming mesh can have.
 
 static void stretch(double time, const double rest[3], double place[3])
 {
@@ -155,7 +155,8 @@ static float (*rest_positions(BodyFixture *fixture, size_t *count))[3]
     return body_fixture_positions(fixture, false, count);
 }
 
-// A skin that stretches at constant speed, no forces: each strand flies with its root as it is.
+// A surface that stretches at constant speed, without forces: each strand moves with its root and
+// keeps its form.
 static void check_flight(const char *algo, const char *variant)
 {
     if (strcmp(variant, "thesis") == 0 || strcmp(variant, "dragged") == 0 ||
@@ -163,8 +164,8 @@ static void check_flight(const char *algo, const char *variant)
         return; // they pull hair through the world (docs/motion.md)
     BodyFixture fixture;
     size_t count;
-    // Springs without any damping swing when rounding shifts their ends: 1e-7 m at 1.6 m, in each
-    // of some 20 parts of 24 steps, is a strain of 1e-5 of a link that nothing takes away.
+    // Springs without damping oscillate when rounding shifts their ends: 1e-7 m at 1.6 m, in each
+    // of about 20 sub-steps of 24 steps, strains a link by 1e-5, and nothing reduces that.
     double allowed = strcmp(algo, "spring") == 0 ? 5e-4 : 2e-5;
     body_fixture_create(&fixture, algo, variant, stretch, 30, 0, 20);
     RunParams *run = &fixture.base.scene.run;
@@ -186,8 +187,9 @@ static void check_flight(const char *algo, const char *variant)
                 for (int k = 0; k < 3; ++k) {
                     double off =
                         (double)now[at + j][k] - (double)rest[at + j][k] - (expected[k] - root[k]);
-                    // The velocity at the start is a difference of places over 1 ms, in double
-                    // precision: rounding of places by 1e-7 m a step, as a walk of 24 steps.
+                    // The velocity at the start is a difference of positions over 1 ms in double
+                    // precision. Positions are rounded by 1e-7 m per step, a random walk of 24
+                    // steps.
                     if (!(fabs(off) < (j ? allowed : 1e-6)))
                         fail_msg("%s %s: vertex %u is off by %g m", algo, variant, j, off);
                 }
@@ -212,7 +214,7 @@ static void bend(double time, const double rest[3], double place[3])
     place[2] = rest[2] * (1 - 0.5 * time);
 }
 
-// Every root keeps its distance from the skin.
+// The largest change of a root's distance from the surface.
 static double farthest_from_skin(BodyFixture *fixture, bool followers, double time)
 {
     Mesh mesh = fixture->mesh;
@@ -253,7 +255,7 @@ static void create_with_followers(BodyFixture *fixture, const char *algo, const 
     params->followers = (AutoInt){false, 8};
     params->follower_radius = (AutoFloat){false, 0.004f};
     assert_int_equal(params_parse(params_find("follow"), params, follow, NULL), RESULT_OK);
-    // Straight up from the sheet, so that followers' discs lie in it.
+    // Straight up from the sheet, so that the followers' discs lie in the sheet.
     Strands *strands = &fixture->base.strands;
     for (uint32_t s = 0; s < strands->strand_count; ++s) {
         const float *root = strands->position[strands->first[s]];
@@ -275,7 +277,7 @@ static void followers_stay_on_a_skin_that_stretches(void **state)
         create_with_followers(&fixture, "split", ways[i], 0);
         for (int frame = 0; frame <= 30; frame += 15) {
             simulation_fixture_go(&fixture.base, frame);
-            // Offsets are rounded at 1.6 m a few times; without binding they are 2 mm off.
+            // Offsets are rounded several times at 1.6 m; without binding, they differ by 2 mm.
             assert_true(farthest_from_skin(&fixture, false, frame / 60.0) < 1e-5);
             assert_true(farthest_from_skin(&fixture, true, frame / 60.0) < 1e-5);
         }
@@ -283,7 +285,7 @@ static void followers_stay_on_a_skin_that_stretches(void **state)
     }
 }
 
-// Roots between two steps, and of solvers that take parts of a step.
+// Roots between two steps, and in solvers with sub-steps.
 static void check_roots(const char *algo, const char *variant)
 {
     BodyFixture fixture;
@@ -304,7 +306,7 @@ static void roots_stay_on_the_skin_between_steps(void **state)
     simulation_fixture_each(check_roots);
 }
 
-// Half a second of rest, then a kilometre away within a sample.
+// Half a second of rest, then a jump of a kilometre between two samples.
 static void jump(double time, const double rest[3], double place[3])
 {
     bool there = time > 0.24;
@@ -325,7 +327,8 @@ static void check_jump(const char *algo, const char *variant)
     for (uint32_t b = 0; b < hair->batch_count; ++b)
         for (uint32_t s = 0; s < hair->batches[b].strand_count; ++s) {
             for (uint32_t j = 0; j < hair->batches[b].vertex_count; ++j, ++at)
-                // At 1 km floats are 6e-5 m apart, which springs feel; nothing is flung about.
+                // At 1 km, floats are 6e-5 m apart, which excites springs; but no strand is thrown
+                // about.
                 if (!(fabsf(now[at][0] - rest[at][0] - 1000) < 0.1f &&
                       fabsf(now[at][1] - rest[at][1]) < 0.1f &&
                       fabsf(now[at][2] - rest[at][2]) < 0.1f))
@@ -344,7 +347,7 @@ static void a_cut_carries_hair_along(void **state)
     simulation_fixture_each(check_jump);
 }
 
-// Waves that fold the sheet, collapse it at times and turn parts of it over, 3 m/s at most.
+// Waves of up to 3 m/s that fold the sheet, sometimes collapse it and turn parts of it over.
 static void wild(double time, const double rest[3], double place[3])
 {
     for (int k = 0; k < 3; ++k) {
@@ -355,7 +358,8 @@ static void wild(double time, const double rest[3], double place[3])
     if (time > 0.25 && time < 0.3) place[0] = 0.1 - (place[0] - 0.1); // mirrored
 }
 
-// Nothing but finite places within a strand's length from the root, but for springs, which stretch.
+// Positions must be finite and, except for springs, which stretch, within a strand's length from
+// the root.
 static void check_wild(const char *algo, const char *variant)
 {
     BodyFixture fixture;
@@ -390,7 +394,7 @@ static void wild_warps_stay_finite(void **state)
     simulation_fixture_each(check_wild);
 }
 
-// Saved at a frame and restored: to the bit, also between steps.
+// Saving at a frame and restoring gives equal positions to the bit, also between steps.
 static void a_run_goes_on_as_if_it_had_not_stopped(void **state)
 {
     (void)state;
@@ -425,7 +429,7 @@ static void a_run_goes_on_as_if_it_had_not_stopped(void **state)
         }
 }
 
-// Hair that was groomed in another pose lies on the mesh at time 0 as it lay on that.
+// Hair that was groomed in another pose is moved with the mesh to its pose at time 0.
 static void a_groom_is_carried_from_its_rest_pose(void **state)
 {
     (void)state;
@@ -433,7 +437,7 @@ static void a_groom_is_carried_from_its_rest_pose(void **state)
     MeshSequence sequence;
     Mesh rest, mesh;
     body_fixture_create(&fixture, "none", "", rigid, 60, 0, 2);
-    // The rest pose is the sheet; the samples begin elsewhere.
+    // The rest pose is the sheet, and the samples start elsewhere.
     body_fixture_sample(&sequence, &fixture.mesh, rigid, 60, 0.3, 5);
     sequence.times.start = 0;
     assert_int_equal(
@@ -457,10 +461,10 @@ static void a_groom_is_carried_from_its_rest_pose(void **state)
         double from[3], to[3];
         for (int k = 0; k < 3; ++k) from[k] = (double)before[v][k];
         rigid(0.3, from, to);
-        for (int k = 0; k < 3; ++k) // as rings of 2 cm turn by roundings of 1e-7 m
+        for (int k = 0; k < 3; ++k) // rings of 2 cm are rotated by rounding of 1e-7 m
             assert_true(fabs((double)strands->position[v][k] - to[k]) < 1e-5);
     }
-    // A mesh in another place than the hair is refused, with what to look at.
+    // A mesh that is not where the hair is gets refused, with advice.
     Error error;
     body_fixture_sample(&sequence, &rest, rigid, 60, 0, 2);
     for (uint32_t v = 0; v < rest.vertex_count; ++v) rest.position[v][1] += 0.5f;

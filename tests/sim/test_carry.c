@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hair and its head moved as one body: a solver's result depends neither on the place nor on a
-// constant speed.
+// Moving hair and its head together as one body: a solver's result depends neither on the position
+// nor on a constant velocity.
 #include "sim/carry.h"
 #include "support/twin.h"
 
@@ -42,11 +42,12 @@ static void pair_destroy(Pair *pair)
 
 static void apply(Pair *pair, const HeadMotion *motion)
 {
-    free(fixture_positions(&pair->moved, 0)); // the solver has posed
+    free(fixture_positions(&pair->moved, 0)); // the solver must have posed
     carry_apply(&pair->carry, &pair->moved.solver, &pair->moved.hair, motion, NULL);
 }
 
-// How far the moved strand is from the still one carried by `head`: RMS over the length.
+// The distance of the moved strand from the still strand moved by `head`: RMS relative to the
+// length.
 static double difference(Pair *pair, const HeadPose *head)
 {
     Vec still[N], moved[N];
@@ -60,7 +61,7 @@ static double difference(Pair *pair, const HeadPose *head)
     return twin_rms((const Vec *)still, (const Vec *)moved, N, LENGTH);
 }
 
-// Who is off, and why; RMS over the length that it stays below.
+// Solvers with larger differences, why, and the bound: RMS relative to the length.
 static const struct {
     const char *algo, *variant, *why;
     double carried, galilean;
@@ -96,9 +97,9 @@ static void for_all_solvers(Claim claim)
             claim(*type, (*type)->variants[v] ? (*type)->variants[v] : "");
 }
 
-// Half a second of swinging, a carry in the middle of it, then as long again: 60 steps of float32,
-// whose rounding at a place 2 m away is 2.4e-7 m a step, 1e-6 of the length; the swing makes at
-// most 200 times that of it.
+// Swings for half a second, is carried, and swings as long again: 60 steps of float32, whose
+// rounding 2 m away is 2.4e-7 m per step, 1e-6 of the length; swinging amplifies that 200 times at
+// most.
 static void check_carried(const SolverType *type, const char *variant)
 {
     Pair pair;
@@ -127,8 +128,8 @@ static void carried_hair_goes_on_as_if_it_had_always_been_there(void **state)
     for_all_solvers(check_carried);
 }
 
-// A head at constant speed in air that moves along, from the first instant: the same motion but for
-// rounding at places up to 1.5 m away.
+// A head at constant velocity, with the air at the same velocity, from the first instant: the
+// motion is equal except for rounding at positions up to 1.5 m away.
 static void check_galilean(const SolverType *type, const char *variant)
 {
     Pair pair;
@@ -156,8 +157,8 @@ static void a_head_at_constant_speed_is_like_one_at_rest(void **state)
     for_all_solvers(check_galilean);
 }
 
-// All parts of a motion at once, in a state of any velocities: x' = R x + T, v' = R v + V + W x x'.
-// Float32 rounds positions of up to 3 m and velocities of up to 6 m/s: a few units of 2^-23 and
+// All parts of a motion together, in a state with any velocities: x' = R x + T, v' = R v + V + W x
+// x'. Float32 rounds positions of up to 3 m and velocities of up to 6 m/s: a few units of 2^-23 and
 // 2^-22.
 static void a_motion_acts_as_its_formula_says(void **state)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parameters that change over time, through a whole simulation.
+// Parameters that change over time, in a whole simulation.
 #include "scene/section_keys.h"
 #include "sim/simulation_state.h"
 #include "support/simulation_fixture.h"
@@ -40,8 +40,8 @@ static double farthest_apart(SimulationFixture *a, SimulationFixture *b)
     return most;
 }
 
-// A formula that says the constant: the same bytes; split draws its style by another way of
-// rounding.
+// A formula with a constant value gives the same bytes as the value; split draws its style in
+// another way, with other rounding.
 static void check_constants(const char *algo, const char *variant)
 {
     SimulationFixture constant, keyed;
@@ -57,8 +57,8 @@ static void check_constants(const char *algo, const char *variant)
         simulation_fixture_go(&constant, frame);
         simulation_fixture_go(&keyed, frame);
         double apart = farthest_apart(&constant, &keyed);
-        // Polynomials of a turn are good to 3e-7 rad (pose.c), the other way's arcs to a few
-        // roundings of 6e-8, in each of 12 segments of 3 cm: 12 * 0.03 * 1e-6 * 12.
+        // Polynomials of a rotation are accurate to 3e-7 rad (pose.c), the arcs of the other way to
+        // a few roundings of 6e-8, in each of 12 segments of 3 cm: 12 * 0.03 * 1e-6 * 12.
         if (!(apart <= (strcmp(algo, "split") == 0 ? 4.3e-6 : 0)))
             fail_msg("%s %s: frame %d: %g m", algo, variant, frame, apart);
     }
@@ -80,12 +80,12 @@ static float mean_height(SimulationFixture *fixture)
     return 0.5f * (tip[1] + other[1]);
 }
 
-// Hair that loses its style hangs as loose hair does: nothing holds its weight any more.
+// Hair that loses its style hangs like loose hair: nothing carries its weight any more.
 static void check_fading(const char *algo, const char *variant)
 {
     SimulationFixture fading, loose;
     if (strcmp(variant, "thesis") == 0 || strcmp(variant, "dragged") == 0 ||
-        strcmp(algo, "none") == 0 || strcmp(algo, "tressfx") == 0) // it keeps its local shape
+        strcmp(algo, "none") == 0 || strcmp(algo, "tressfx") == 0) // keeps its local shape
         return;
     simulation_fixture_create(&fading, algo, variant);
     simulation_fixture_create(&loose, algo, variant);
@@ -116,7 +116,7 @@ static void style_that_fades_lets_hair_fall(void **state)
     simulation_fixture_each(check_fading);
 }
 
-// A number that changes wakes hair that sleeps, and a resumed run is the same to the bit.
+// A changing parameter wakes sleeping hair, and a resumed run is equal to the bit.
 static void changes_wake_hair_and_resume(void **state)
 {
     (void)state;

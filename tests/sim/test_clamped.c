@@ -11,10 +11,12 @@
 
 #include <cmocka.h>
 
-// Rounding grows with steps: chain of 48 vertices has 0.7 of what is allowed here, 1.2 after 40.
+// Rounding grows over steps: chain with 48 vertices uses 0.7 of the tolerance here, and 1.2 after
+// 40 steps.
 enum { MOST = 48, STEPS = 30 };
 
-// `count` particles of a curl from vertex `first` on, under wind and a head that swings and nods.
+// Simulates `count` particles of a curl from vertex `first` on, in wind and on a head that swings
+// and nods.
 static void run(const SolverType *type, const char *variant, int n, int first, int clamped, Vec *q,
                 HairFixture *fixture)
 {
@@ -23,7 +25,7 @@ static void run(const SolverType *type, const char *variant, int n, int first, i
     fixture_create(fixture, (const Vec *)&start[first], 1, n - first, type->name, variant, 0.3f, 1);
     fixture->params.clamped = clamped;
     fixture_solve_anew(fixture);
-    fixture->step.dt = n > 16 ? 1.0 / 240 : 1.0 / 60; // long strands in long steps are chaotic
+    fixture->step.dt = n > 16 ? 1.0 / 240 : 1.0 / 60; // long strands are chaotic with long steps
     for (int i = 0; i < 4; ++i) fixture->step.wind[i][0] = 1;
     for (int i = 1; i <= STEPS; ++i) {
         HeadPose *head = &fixture->step.head;
@@ -36,18 +38,18 @@ static void run(const SolverType *type, const char *variant, int n, int first, i
 
 static bool carries_one(const SolverType *type)
 {
-    return strcmp(type->name, "tressfx") != 0; // carries two by definition
+    return strcmp(type->name, "tressfx") != 0; // carries two vertices by definition
 }
 
-// Unstable as published, or chaotic where hair is loose.
+// Solvers that are unstable as published, or chaotic with loose hair.
 static bool multiplies_rounding(const SolverType *type, const char *variant)
 {
     return strcmp(variant, "thesis") == 0 || strcmp(variant, "explicit") == 0 ||
            (strcmp(type->name, "rope") == 0 && strcmp(variant, "xpbd") == 0);
 }
 
-// The rest of the strand moves as if it were a strand of its own. Both begin with the same numbers
-// but for the rounding of the root's place.
+// The remaining strand moves like a strand of its own. Both start with the same numbers, except for
+// the rounding of the root's position.
 static void check(const SolverType *type, const char *variant, int n)
 {
     HairFixture whole, part;
@@ -55,7 +57,7 @@ static void check(const SolverType *type, const char *variant, int n)
     run(type, variant, n, 0, 2, all, &whole);
     run(type, variant, n, 1, 1, rest, &part);
     double off = twin_rms((const Vec *)&all[1], (const Vec *)rest, n - 1, 0.21);
-    // dftl's guard counts a strand's whole gain: 1.05e-5 with 48 vertices.
+    // dftl's energy guard considers the gain of the whole strand: 1.05e-5 with 48 vertices.
     double usual = strcmp(type->name, "dftl") == 0 ? 3e-5 : 1e-5,
            bound = multiplies_rounding(type, variant) ? 1e-3 : usual;
     if (!(off < bound)) fail_msg("%s %s, %d vertices: off by %g", type->name, variant, n, off);
@@ -77,7 +79,7 @@ static void check(const SolverType *type, const char *variant, int n)
 static void a_clamped_strand_is_a_shorter_one_behind_its_first_segment(void **state)
 {
     (void)state;
-    static const int counts[] = {10, MOST}; // in registers and through memory
+    static const int counts[] = {10, MOST}; // in registers, and through memory
     for (const SolverType *const *type = SOLVER_TYPES; *type; ++type)
         for (int v = 0; !solver_is_static(*type) && (v == 0 || (*type)->variants[v]); ++v)
             for (int i = 0; i < (v ? 1 : 2) && carries_one(*type); ++i)

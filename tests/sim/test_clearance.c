@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Colliders do not push a groom that is at rest, however near or deep it lies, and hold what moves
-// where it was or at the margin.
+// Colliders do not push a groom at rest, however near or deep it lies. If it moves, they keep it at
+// its rest depth or at the margin.
 #include "support/hair_fixture.h"
 #include "support/simulation_fixture.h"
 
@@ -19,13 +19,13 @@ enum { STRANDS = 16, N = 10, FPS = 60 };
 static const double RADIUS = 0.1, MARGIN = 1e-3;
 static const char HEAD[] = "sphere:0,0,0,0.1";
 
-// Metres over the ball: 4 mm deep to 3.5 mm off.
+// Height above the ball, m: from 4 mm deep to 3.5 mm outside.
 static double height_of(int strand)
 {
     return 5e-4 * (strand - STRANDS / 2);
 }
 
-// Strands along meridians of the ball, from near its top to its equator.
+// Strands along the ball's meridians, from near its top to its equator.
 static void lay_strands(Strands *strands)
 {
     strands_destroy(strands);
@@ -61,12 +61,12 @@ static bool keeps_groom(const char *algo, const char *variant)
     SimulationFixture fixture;
     simulation_fixture_create(&fixture, algo, variant);
     bool keeps = solver_keeps_groom(&fixture.scene.sections[0].params) &&
-                 strcmp(algo, "none") != 0; // which is not pushed at all
+                 strcmp(algo, "none") != 0; // `none` is not pushed at all
     simulation_fixture_destroy(&fixture);
     return keeps;
 }
 
-// Drawn positions, with what the head has moved them taken back.
+// Drawn positions without the head's motion.
 static float (*read_points(const SimulationFixture *fixture, const Hair *hair))[3]
 {
     const HeadPose *head = &fixture->simulation.bodies[0].head;
@@ -88,7 +88,7 @@ static double norm(const float v[3])
                 (double)v[2] * (double)v[2]);
 }
 
-// Half of a millimetre of 12 cm is 4e-3; what rounding and tressfx's iterations leave is 1e-5.
+// Half a millimetre of 12 cm is 4e-3; rounding and tressfx's iterations leave 1e-5.
 static void check_rest(const char *algo, const char *variant)
 {
     SimulationFixture fixture;
@@ -115,8 +115,8 @@ static void a_groom_in_a_collider_stays_there(void **state)
     simulation_fixture_each(check_rest);
 }
 
-// The slack of a clearance (collide.comp) is 1e-4 of the longest strand, and as much is left of a
-// depth that is pushed out (test_solvers_collision.c).
+// The tolerance of a clearance (collide.comp) is 1e-4 of the longest strand, and as much remains of
+// a depth that is pushed out (test_solvers_collision.c).
 static void check_held(const char *algo, const char *variant)
 {
     SimulationFixture fixture;
@@ -150,7 +150,7 @@ static void hair_that_moves_gets_no_deeper_than_its_groom(void **state)
     simulation_fixture_each(check_held);
 }
 
-// How many particles touch the ball after a few steps.
+// The number of particles that touch the ball after a few steps.
 static uint64_t contacts_of(RestRule rest, float style)
 {
     SimulationFixture fixture;
@@ -172,7 +172,7 @@ static void hair_that_hangs_or_is_loose_is_pushed_out(void **state)
     assert_true(contacts_of(REST_GROOM, 0) > 0);
 }
 
-// How far followers are from where they begin after half a second at rest, m.
+// How far followers have moved from their start after half a second at rest, m.
 static double followers_off(bool collide)
 {
     SimulationFixture fixture;

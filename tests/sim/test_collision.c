@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Colliders: where they push a particle, and the text that lists them. test_solvers_collision.c has
-// whole strands.
+// Colliders: where they push a particle, and the text that describes them. Whole strands are tested
+// in test_solvers_collision.c.
 #include "sim/collision.h"
 #include "support/twin.h"
 
@@ -12,17 +12,17 @@
 
 #include <cmocka.h>
 
-// Stored positions of up to 0.5 m round by 3e-8 m each; a distance by a few of them.
+// Positions of up to 0.5 m are rounded by 3e-8 m each, and a distance by a few of these.
 static const double ROUNDING = 2e-7;
 
 static const double MARGIN = 0.001; // the default of collision_margin
 
-// --- One particle on one link: where a push must put it.
+// --- One particle on one link: the exact position after a push.
 
 enum { PAIR = 2 };
 
-// The tip of a link from the origin to `tip`, at rest and without forces, after a step among the
-// shapes of `text`.
+// A link without forces goes from the origin to `tip`, at rest. `pushed`: the tip's position after
+// a step among the colliders of `text`.
 static void push_pair(const Vec tip, const char *text, const char *algo, Vec pushed)
 {
     Vec start[PAIR] = {{0, 0, 0}}, q[PAIR];
@@ -45,8 +45,8 @@ static void assert_at(const Vec got, double x, double y, double z)
     if (!(vec_norm(off) < ROUNDING)) fail_msg("got %g %g %g", got[0], got[1], got[2]);
 }
 
-// The link turns in the plane of sphere's centre and link until the tip is where both spheres, of
-// radius 0.1 about the root and 0.05 about (0.1, -0.03, 0), meet.
+// The link turns in the plane of the link and the sphere's centre, until the tip lies on two
+// spheres: of radius 0.1 around the root, and of radius 0.05 around (0.1, -0.03, 0).
 static void a_sphere_pushes_to_its_surface(void **state)
 {
     (void)state;
@@ -71,8 +71,8 @@ static void planes_push_to_their_height(void **state)
     assert_at(pushed, 0, -up, -side);
 }
 
-// The rounded cone from (0.1, -0.1, 0) with radius 0.02 to (0.1, 0.1, 0) with radius 0.06: all
-// spheres between.
+// Distance from the rounded cone between (0.1, -0.1, 0) with radius 0.02 and (0.1, 0.1, 0) with
+// radius 0.06, as the minimum over spheres between the two.
 static double cone_distance(const Vec p)
 {
     double least = 1;
@@ -84,8 +84,9 @@ static double cone_distance(const Vec p)
     return least;
 }
 
-// Side, both ends: the tip comes to the surface, and no farther than it must, in the plane of the
-// link and the axis. The sum over 20,000 spheres is off by 0.2/20000/2 times the slope at most.
+// Near the side and both ends: the tip moves onto the surface, no farther than necessary, in the
+// plane of the link and the axis. The minimum over 20,000 spheres errs by 0.2/20000/2 times the
+// slope at most.
 static void a_capsule_of_two_radii_pushes_to_its_surface(void **state)
 {
     (void)state;
@@ -111,7 +112,7 @@ static void a_capsule_inside_its_larger_end_is_a_sphere(void **state)
     assert_memory_equal(a, b, sizeof a);
 }
 
-// The root goes up by 5 cm, and the sphere under the tip with it or not.
+// The root rises by 5 cm, and the sphere under the tip rises with it or stays.
 static void a_world_collider_stays_where_it_is(void **state)
 {
     (void)state;
@@ -131,9 +132,9 @@ static void a_world_collider_stays_where_it_is(void **state)
     }
 }
 
-// --- A mesh.
+// --- Meshes.
 
-// A cube of 20 cm at `middle`, turned by this quaternion.
+// A cube of 20 cm at `middle`, rotated by this quaternion.
 static void make_cube(Mesh *mesh, const float middle[3], const versor turn)
 {
     static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
@@ -149,8 +150,8 @@ static void make_cube(Mesh *mesh, const float middle[3], const versor turn)
         for (int k = 0; k < 3; ++k) mesh->triangle[i][k] = quads[i / 2][k == 0 ? 0 : k + i % 2];
 }
 
-// A strand from the origin that dips into what `text` or the field has with its middle particle,
-// and whose tip is outside again: where the middle one is pushed to.
+// A strand from the origin whose middle particle is inside the collider of `text` or the field, and
+// whose tip is outside. `pushed`: where the middle particle is pushed to.
 static void push_elbow(const Vec middle, const vec3 normal, const char *text,
                        const DistanceField *field, Vec pushed)
 {
@@ -169,10 +170,10 @@ static void push_elbow(const Vec middle, const vec3 normal, const char *text,
     fixture_destroy(&fixture);
 }
 
-// Near the middle of each side of a cube, turned about no axis of the grid, its field is that
-// side's plane: a particle there is pushed to where the plane pushes it. The roots are 30 cm off,
-// beyond the grid, by a distance that they do reach. Measured (the field's samples, positions in
-// it): 9.1e-7 m, and three times that.
+// Near the middle of each side of a cube, rotated about no axis of the grid, the field equals the
+// plane of that side, and pushes a particle to the same position as the plane does. The roots are
+// 30 cm away, outside the grid but near enough for the strand to reach it. Measured, with the
+// field's samples and positions among them: 9.1e-7 m; three times that is allowed.
 static void a_mesh_pushes_as_the_planes_of_its_sides_do(void **state)
 {
     (void)state;
@@ -207,12 +208,12 @@ static void a_mesh_pushes_as_the_planes_of_its_sides_do(void **state)
     assert_true(worst < 3 * 9.1e-7);
 }
 
-// --- Roots inside.
+// --- Roots inside a collider.
 
 enum { BURIED = 9 };
 static const double BURIED_LINK = 0.01, DEPTH = 0.035; // of the root below the margin, m
 
-// A strand along x from a root below the ground, that rises by `rise` along each metre.
+// A strand along x from a root below the ground, which rises by `rise` per metre.
 static void lay_buried(HairFixture *fixture, const char *algo, double rise)
 {
     Vec start[BURIED] = {{0, MARGIN - DEPTH, 0}};
@@ -225,8 +226,8 @@ static void lay_buried(HairFixture *fixture, const char *algo, double rise)
     fixture_collide(fixture, "ground:0");
 }
 
-// A root's depth is left after twice that length: a level strand is pushed to just what that
-// allows.
+// A root's depth is allowed to end after twice that length along the strand: a level strand is
+// pushed exactly to that limit.
 static void a_strand_leaves_half_as_far_as_it_goes(void **state)
 {
     (void)state;
@@ -246,7 +247,8 @@ static void a_strand_leaves_half_as_far_as_it_goes(void **state)
     }
 }
 
-// One that rises by a little more than half its length touches nothing, by a little less it does.
+// A strand that rises by slightly more than half its length has no contact; one that rises slightly
+// less has.
 static void a_strand_that_leaves_faster_is_not_pushed(void **state)
 {
     (void)state;
@@ -256,14 +258,15 @@ static void a_strand_that_leaves_faster_is_not_pushed(void **state)
         lay_buried(&fixture, "dftl", touches ? 0.499 : 0.501);
         fixture_step(&fixture);
         solver_report(&fixture.solver, &report);
-        assert_int_equal(report.contacts, touches ? 7 : 0); // all whose 0.5 s is below DEPTH
+        // all particles for which 0.5 s is below DEPTH
+        assert_int_equal(report.contacts, touches ? 7 : 0);
         fixture_destroy(&fixture);
     }
 }
 
-// --- Reach: what hair can come to is not left out.
+// --- Reach: no collider that hair can touch is skipped.
 
-// A tip at either end of a capsule of 3 m, whose middle is 1.5 m from it.
+// A tip at either end of a capsule 3 m long, whose middle is 1.5 m away.
 static void hair_at_the_ends_of_a_long_capsule_is_pushed(void **state)
 {
     (void)state;
@@ -277,8 +280,8 @@ static void hair_at_the_ends_of_a_long_capsule_is_pushed(void **state)
     }
 }
 
-// A particle that is 5 mm aside from upright falls round its root for 0.7 s, to a ball a link's
-// length below the root, of which it reaches the uppermost 4 mm.
+// A particle 5 mm off upright falls about its root for 0.7 s onto a ball below the root. It reaches
+// only the uppermost 4 mm of the ball.
 static void upright_hair_falls_onto_what_is_below(void **state)
 {
     (void)state;
@@ -295,11 +298,11 @@ static void upright_hair_falls_onto_what_is_below(void **state)
         lowest = fmin(lowest, q[1][1]);
         assert_true(hypot(q[1][0], q[1][1] + 0.126) > ball + MARGIN - ROUNDING);
     }
-    assert_true(lowest < -0.9 * link); // it did come there
+    assert_true(lowest < -0.9 * link); // it reached the ball
     fixture_destroy(&fixture);
 }
 
-// --- The list.
+// --- The list of colliders.
 
 static void assert_refused(const char *text, const char *part)
 {

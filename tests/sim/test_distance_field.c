@@ -36,7 +36,7 @@ static double distance_to_segment(const Point p, const Point a, const Point b)
     return sqrt(dot(r, r));
 }
 
-// By barycentric coordinates, in double precision.
+// Distance by barycentric coordinates in double precision.
 static double distance_to_triangle(const Point p, const Point a, const Point b, const Point c)
 {
     Point u, v, r;
@@ -59,7 +59,8 @@ static void corner(const Mesh *mesh, uint32_t t, int i, Point r)
     for (int k = 0; k < 3; ++k) r[k] = (double)mesh->position[mesh->triangle[t][i]][k];
 }
 
-// The generalised winding number: the sum of solid angles over 4 pi (van Oosterom and Strackee).
+// The generalised winding number: the sum of solid angles, divided by 4 pi (van Oosterom and
+// Strackee).
 static double winding(const Mesh *mesh, const Point p)
 {
     double sum = 0;
@@ -114,7 +115,7 @@ static void grid_point(const DistanceField *field, size_t i, Point p)
         p[k] = (double)field->low[k] + (double)at[k] * (double)field->spacing;
 }
 
-// A box of 12 triangles, outward.
+// A box of 12 triangles that face outwards.
 static void make_box(Mesh *mesh, const float half[3])
 {
     static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
@@ -126,8 +127,8 @@ static void make_box(Mesh *mesh, const float half[3])
         for (int k = 0; k < 3; ++k) mesh->triangle[i][k] = quads[i / 2][k == 0 ? 0 : k + i % 2];
 }
 
-// Largest error of the samples in spacings, and how many have the wrong sign though they are
-// further than 1e-4 spacings from the surface. Every `stride`th sample.
+// The largest error of every `stride`th sample, in spacings, and the number of samples with a wrong
+// sign farther than 1e-4 spacings from the surface.
 typedef struct Judgement {
     double error;
     size_t wrong;
@@ -172,7 +173,8 @@ static double exact_sphere(const void *shape, const Point p)
     return sqrt(dot(p, p)) - (double)*(const float *)shape;
 }
 
-// Its sides fall on no grid points; then, turned into a cube of 16 spacings, exactly on them.
+// The box's sides fall on no grid points; then the box is a cube of 16 spacings, whose sides fall
+// exactly on grid points.
 static void a_box_has_exact_distances_and_signs(void **state)
 {
     (void)state;
@@ -183,7 +185,7 @@ static void a_box_has_exact_distances_and_signs(void **state)
         make_box(&box, halves[i]);
         DistanceField field = compute(&box, i ? 16 : 33, &values);
         Judgement judgement = judge(&field, values, 1, exact_box, halves[i]);
-        assert_true(judgement.error < 1e-5); // rounding of positions up to 20 spacings
+        assert_true(judgement.error < 1e-5); // rounding of coordinates up to 20 spacings
         assert_int_equal(judgement.wrong, 0);
         free(values);
         distance_field_destroy(&field);
@@ -191,7 +193,7 @@ static void a_box_has_exact_distances_and_signs(void **state)
     }
 }
 
-// 64 x 128 facets lie within 0.1 (1 - cos(pi/65)) = 1.2e-4 m of the sphere.
+// The 64 x 128 facets are within 0.1 (1 - cos(pi/65)) = 1.2e-4 m of the sphere.
 static void a_sphere_has_its_distances(void **state)
 {
     (void)state;
@@ -208,11 +210,11 @@ static void a_sphere_has_its_distances(void **state)
     mesh_destroy(&sphere);
 }
 
-// Every grid point against every triangle, in spacings. Within the band of two spacings distances
-// are exact: measured 3.7e-6; coordinates of up to 40 spacings round by 2.4e-6 each. Beyond it,
-// they are those to the nearest of many surface points that flooding finds: a pass less would take
-// the turned box's errors to 1.7 times their mean. They depend on the passes and not on rounding,
-// so that 1.3 times what was measured will do.
+// Every grid point against every triangle, in spacings. Within the band of two spacings, distances
+// are exact: measured 3.7e-6; coordinates of up to 40 spacings are rounded by 2.4e-6 each. Outside
+// the band, they are distances to the nearest of many surface points that flooding finds: one pass
+// less would increase the turned box's mean error 1.7 times. These errors depend on the passes and
+// not on rounding, so that 1.3 times the measured value is allowed.
 static void judge_all(const Mesh *mesh, uint32_t resolution, double most, double mean)
 {
     float *values;
@@ -263,9 +265,9 @@ static void read_head(Mesh *mesh)
         fail_msg("%s", error.text);
 }
 
-// Beyond two spacings distances are those to the nearest of many surface points: measured 0.0705,
-// and 1.3 times that. Against all triangles, and the generalised winding number, in double
-// precision.
+// Beyond two spacings, distances are those to the nearest of many surface points: measured 0.0705;
+// 1.3 times that is allowed. Compared with all triangles and the generalised winding number in
+// double precision.
 static void the_bundled_head_has_exact_distances(void **state)
 {
     (void)state;
@@ -281,7 +283,7 @@ static void the_bundled_head_has_exact_distances(void **state)
     mesh_destroy(&head);
 }
 
-// Forty triangles in four places are missing: signs stay those of the whole head.
+// Forty triangles at four places are missing: signs equal those of the complete head.
 static void holes_do_not_change_the_signs(void **state)
 {
     (void)state;
@@ -329,8 +331,8 @@ static void a_mesh_turned_inside_out_is_the_same(void **state)
     mesh_destroy(&box);
 }
 
-// Closed surfaces have whole winding numbers everywhere: inside skull, neck, nose and shoulder of
-// the head, under its chin, outside.
+// Closed surfaces have integer winding numbers everywhere: tests the head inside the skull, neck,
+// nose and shoulder, under the chin, and outside.
 static void the_head_is_closed(void **state)
 {
     (void)state;
@@ -343,7 +345,7 @@ static void the_head_is_closed(void **state)
     mesh_destroy(&head);
 }
 
-// The second time it is read, to the same bits; a damaged file is as good as none.
+// The second time, the field is read from disk with the same bits; a damaged file is ignored.
 static void a_field_is_kept_on_disk(void **state)
 {
     const float half[3] = {0.1f, 0.05f, 0.05f};
@@ -380,8 +382,8 @@ static void a_field_is_kept_on_disk(void **state)
     mesh_destroy(&box);
 }
 
-// A driver of small storage blocks gets the work in parts, and the field is the same to the bit:
-// the limit below is the grid's largest buffer, and the work in one piece would take several times
+// If a driver's storage blocks are small, the work is done in parts, and the field is equal to the
+// bit. The limit here is the grid's largest buffer; the work in one piece would take several times
 // as much.
 static void any_mesh_fits_into_the_limits_of_the_driver(void **state)
 {

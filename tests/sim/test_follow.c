@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Followers: their places in the plan, and the GPU's against the plan's.
+// Followers: their positions in the plan, and the GPU's positions against the plan's.
 #include "base/nearest.h"
 #include "base/random.h"
 #include "gen/strands_make.h"
@@ -26,7 +26,7 @@ static Strands make_curls(uint32_t count)
     return strands;
 }
 
-// side x side strands of 3 vertices on the plane y = 0, a metre apart, each leaning by `lean`(x).
+// side x side strands of 3 vertices on the plane y = 0, 1 m apart; each leans by `lean`(x).
 static Strands make_lawn(int side, float (*lean)(float x))
 {
     Strands strands;
@@ -79,14 +79,14 @@ static void test_the_tree_finds_what_all_pairs_find(void **state)
     static float point[COUNT][3];
     Random random = random_create(3, 0);
     Nearest nearest;
-    for (int i = 0; i < COUNT; ++i) // a third of them in one place
+    for (int i = 0; i < COUNT; ++i) // a third of them at the same position
         for (int k = 0; k < 3; ++k) point[i][k] = i % 3 ? (float)random_real(&random) : 0.5f;
     assert_int_equal(nearest_create(&nearest, (const float(*)[3])point, COUNT, NULL), RESULT_OK);
     for (uint32_t i = 0; i < COUNT; i += 7) {
         Neighbour found[MOST];
         assert_int_equal(nearest_find(&nearest, i, found, MOST), MOST);
         for (int f = 1; f < MOST; ++f) assert_true(found[f].square >= found[f - 1].square);
-        uint32_t nearer = 0; // than the last one found
+        uint32_t nearer = 0; // number of points nearer than the last one found
         for (uint32_t j = 0; j < COUNT; ++j) {
             double square = 0;
             for (int k = 0; k < 3; ++k) square += pow((double)point[j][k] - (double)point[i][k], 2);
@@ -118,8 +118,9 @@ static void test_offsets_fill_a_disc_across_the_root(void **state)
             assert_true(fabs(along) < 1e-8);
             squares += square;
         }
-        // Evenly in a disc, r^2 is R^2/2 on average with a deviation of R^2/sqrt(12), a coordinate
-        // 0 with R/2; of 400 of them, 5 deviations are 7 % of R^2 and 0.13 R.
+        // For a uniform disc, the mean of r^2 is R^2/2 with a standard deviation of R^2/sqrt(12),
+        // and a coordinate's mean is 0 with R/2; for 400 followers, 5 standard deviations are 7 %
+        // of R^2 and 0.13 R.
         assert_true(fabs(squares / PER_GUIDE / 1e-4 - 0.5) < 0.07);
         for (int k = 0; k < 3; ++k) assert_true(fabs(middle[k] / PER_GUIDE / 0.01) < 0.13);
     }
@@ -127,7 +128,7 @@ static void test_offsets_fill_a_disc_across_the_root(void **state)
     strands_destroy(&strands);
 }
 
-// A follower by what it looks like, whatever the numbers of its guides.
+// Compares followers by their positions, regardless of their guides' numbers.
 static int compare_followers(const void *a, const void *b)
 {
     const Follower *x = a, *y = b;
@@ -164,14 +165,15 @@ static void test_same_followers_in_any_order_of_strands(void **state)
     }
 }
 
-// On a lawn the roots of a guide's followers are nearer to it than to any other guide, all around
-// it.
+// On a lawn, the roots of a guide's followers are nearer to it than to any other guide, and lie all
+// around it.
 static void test_interpolation_covers_the_scalp(void **state)
 {
     enum { SIDE = 7, PER_GUIDE = 64 };
     (void)state;
     Strands strands = make_lawn(SIDE, upright);
-    // Squares have two diagonals, both of which are Delaunay's: a little disorder chooses one.
+    // Squares have two diagonals, both allowed in a Delaunay triangulation: small random offsets
+    // decide.
     Random random = random_create(1, 1);
     for (uint32_t v = 0; v < strands.vertex_count; ++v)
         strands.position[v][0] += 0.02f * (float)random_real(&random);
@@ -190,8 +192,8 @@ static void test_interpolation_covers_the_scalp(void **state)
                 assert_true(of->weight[g] >= 0 && of->weight[g] <= of->weight[0]);
             }
             assert_true(of->guide[0] == s && fabs(sum - 1) < 1e-6);
-            // The third of a triangle with sides of 1 and a right angle; at the rim there are
-            // slivers.
+            // A third of a triangle with a right angle and legs of 1; at the rim there are thin
+            // triangles.
             assert_true(!inside || (fabs(x) < 0.70 && fabs(z) < 0.70));
             quadrants |= 1u << ((x > 0) + 2 * (z > 0));
         }
@@ -216,7 +218,7 @@ static void test_interpolation_keeps_partings(void **state)
     }
     assert_int_equal(between, SIDE * SIDE * PER_GUIDE);
     follow_plan_destroy(&plan);
-    // Roots too far apart have their followers beside them.
+    // If roots are too far apart, followers stay next to their guide.
     plan = make_plan(&strands, (FollowOptions){PER_GUIDE, true, 0.1f, 1});
     for (uint32_t i = 0; i < SIDE * SIDE * PER_GUIDE; ++i)
         assert_true(plan.follower[i].weight[0] == 1);
@@ -234,7 +236,7 @@ static float apart_by_65(float x)
     return x < 2.5f ? -0.637070f : 0.637070f; // tan(32.5 degrees)
 }
 
-// Followers bridge what leads in directions up to 60 degrees apart.
+// Followers are interpolated between guides whose directions differ by up to 60 degrees.
 static void test_a_parting_begins_at_60_degrees(void **state)
 {
     enum { SIDE = 6, PER_GUIDE = 16 };
@@ -254,7 +256,7 @@ static void test_a_parting_begins_at_60_degrees(void **state)
     }
 }
 
-// The share of a triangle where no weight is above w.
+// The share of a triangle where no weight is greater than w.
 static double share_below(double w)
 {
     if (w < 1.0 / 3) return 0;
@@ -267,16 +269,16 @@ static int compare_numbers(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-// Three guides, one triangle: the largest weights are spread as areas are, by the test of
-// Kolmogorov and Smirnov at the level of 0.1 %; the others are equal on average, within four
-// deviations, of sqrt(2 Var) < 0.2 of their difference.
+// Three guides, one triangle: the largest weights are distributed like areas, by the
+// Kolmogorov-Smirnov test at the level of 0.1 %. The other two are equal on average, within four
+// standard deviations of their difference, sqrt(2 Var) < 0.2.
 static void test_followers_lie_evenly_between_guides(void **state)
 {
     enum { PER_GUIDE = 4000, COUNT = 3 * PER_GUIDE };
     static float largest[COUNT];
     (void)state;
     Strands strands = make_lawn(2, upright);
-    strands.strand_count = 3; // the fourth of the lawn is left out
+    strands.strand_count = 3; // without the fourth strand of the lawn
     FollowPlan plan = make_plan(&strands, (FollowOptions){PER_GUIDE, true, 1, 1});
     double off = 0, difference = 0;
     for (int i = 0; i < COUNT; ++i) {
@@ -305,7 +307,8 @@ static void test_the_file_says_how_many_unless_the_user_does(void **state)
     assert_true(follow_plan_reach(&params, &strands) == 0);
     strands.followers = 6;
     assert_int_equal(follow_plan_options(&params, &strands, 0).per_guide, 6);
-    // A root's share of the lawn is a square metre, a disc of 0.56 m; less is seen at the rim.
+    // A root's share of the lawn is one square metre, a disc of radius 0.56 m; at the rim the share
+    // is smaller.
     assert_true(fabsf(follow_plan_options(&params, &strands, 0).radius - 0.56f) < 0.1f);
     strands.follower_radius = 0.25f;
     params.tip_separation = 2;
@@ -321,7 +324,7 @@ static void test_hair_of_few_strands_is_filled(void **state)
     (void)state;
     SectionParams params;
     assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
-    const double frame = 16000; // segments that a frame costs besides those of the hair
+    const double frame = 16000; // segments that a frame costs in addition to the hair's
     for (uint32_t count = 20; count < 6000; count = count * 5 / 4) {
         Strands strands = make_curls(count);
         FollowOptions options = follow_plan_options(&params, &strands, 0);
@@ -333,11 +336,11 @@ static void test_hair_of_few_strands_is_filled(void **state)
         assert_int_equal(options.per_guide >= 2, few);
         assert_int_equal(options.interpolate, few);
         assert_int_equal(follow_plan_fills(&params, &strands), few);
-        // Strands whose radius the user says are single fibres.
+        // If the user sets the radius, strands are single fibres.
         params.radius = (AutoFloat){.value = 1e-4f};
         assert_false(follow_plan_fills(&params, &strands));
         params.radius = (AutoFloat){.automatic = true};
-        // A number of the user's or of the file's wins.
+        // A number set by the user or by the file takes precedence.
         params.followers = (AutoInt){.value = 1};
         options = follow_plan_options(&params, &strands, 0);
         assert_true(options.per_guide == 1 && !options.interpolate);
@@ -353,7 +356,7 @@ static void test_hair_of_few_strands_is_filled(void **state)
     params_destroy_section(&params);
 }
 
-// Curls with two vertex counts: two batches.
+// Curls with two vertex counts, which give two batches.
 static Strands make_mixed(void)
 {
     Strands strands = make_curls(90);
@@ -376,8 +379,8 @@ static void read_buffer(const GpuBuffer *buffer, void *data)
 
 typedef float Float4[4];
 
-// The largest distance (m) of a batch's followers from where the plan says by the guides'
-// positions.
+// The largest distance in m of a batch's followers from where the plan puts them according to the
+// guides' positions.
 static double distance_from_plan(const Follow *follow, uint32_t b, const FollowPlan *plan,
                                  const HeadPose *head, bool with_offset)
 {
@@ -435,9 +438,9 @@ static void check_gpu(int mode, float clump)
         assert_int_equal(follow_plan_create(&plan, &strands, guides->strand, guides->strand_count,
                                             &options, NULL),
                          RESULT_OK);
-        // Coordinates are below 2 m; a handful of operations round by 2^-24 of that each.
+        // Coordinates are below 2 m; a few operations are rounded by 2^-24 of that each.
         assert_true(distance_from_plan(&follow, b, &plan, &fixture.step.head, true) < 1e-6);
-        if (mode == FOLLOW_OFFSET) // the test can fail
+        if (mode == FOLLOW_OFFSET) // shows that the test can fail
             assert_true(distance_from_plan(&follow, b, &plan, &fixture.step.head, false) > 1e-4);
         follow_plan_destroy(&plan);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Coulomb's friction against its closed forms: one particle on a plane or a ball, whose link to its
-// root lies across the way that it slides. What a pass does to one particle it does to all.
+// Coulomb friction against closed formulas: one particle on a plane or a ball, whose link to its
+// root is perpendicular to the sliding direction. All particles are treated alike.
 #include "support/hair_fixture.h"
 #include "support/twin.h"
 
@@ -16,10 +16,10 @@
 static const double FRICTION = (double)0.3f; // the default
 static const double G = (double)9.81f, RATE = 240, LINK = 1;
 
-// Particles, velocities by second order and, in split, segments with a tip. Their greatest errors
-// of angles below, rad: three times what was measured (dftl's own damping), or three times what
-// rounding makes of a way of 60 steps, whose speed is off by half a unit of positions up to 0.25 m
-// a step: 2^-27 sqrt(60^3/3) / sqrt(3) = 1.2e-6 on any driver (measured: 2.2e-7).
+// Particles, second-order velocities and, in split, segments with a tip. The bounds are errors of
+// angles in rad: three times what was measured (dftl's damping), or three times what rounding
+// causes over 60 steps, where the velocity errs by half a unit of positions up to 0.25 m per step:
+// 2^-27 sqrt(60^3/3) / sqrt(3) = 1.2e-6 on any driver (measured: 2.2e-7).
 static const struct {
     const char *algo;
     double slide, halt;
@@ -37,7 +37,8 @@ static void lay_pair(HairFixture *fixture, const char *algo, const char *text, c
     fixture_collide(fixture, text);
 }
 
-// The tip's angle about the vertical through the root, from z to x, after so many steps more.
+// The tip's angle about the vertical through the root, from z to x, after this number of further
+// steps.
 static double angle_after(HairFixture *fixture, int steps)
 {
     Vec q[PAIR];
@@ -46,14 +47,14 @@ static double angle_after(HairFixture *fixture, int steps)
     return atan2(q[1][0], q[1][2]);
 }
 
-// --- On a slope. The link lies level, gravity pulls at its tip across it.
+// --- On a slope. The link is level, and gravity pulls its tip across the link.
 
 static void lay_on_plane(HairFixture *fixture, const char *algo)
 {
     lay_pair(fixture, algo, "ground:0", (const Vec){0, MARGIN, 0}, (const Vec){0, MARGIN, LINK});
 }
 
-// Gravity as on a slope of this tangent.
+// Gravity as on a slope with this tangent.
 static void tilt(HairFixture *fixture, double tangent)
 {
     double cosine = 1 / sqrt(1 + tangent * tangent);
@@ -62,7 +63,7 @@ static void tilt(HairFixture *fixture, double tangent)
 }
 
 // The angle by which a pendulum on a slope turns from rest in t seconds: phi'' = (g sin a cos phi -
-// friction g cos a) / l, by the midpoint rule in steps that are too short to matter.
+// friction g cos a) / l, by the midpoint rule in tiny steps.
 static double slope_angle(double tangent, double t)
 {
     enum { STEPS = 10000 };
@@ -76,14 +77,15 @@ static double slope_angle(double tangent, double t)
     return angle;
 }
 
-// What friction takes from the tip's way in the first step, when it only slows it down, and holds
-// it back from the next step on (what rests would creep otherwise), rad.
+// The angle that the tip loses at the start, rad: in the first step, friction only slows the tip
+// down, and from the next step on it also holds it back (otherwise resting hair would creep).
 static double first_step(double tangent)
 {
     return 0.5 * FRICTION * G / sqrt(1 + tangent * tangent) / (RATE * RATE * LINK);
 }
 
-// At 3 % less than the friction's tangent hair holds. 2^-23 rad: the rounding of its position.
+// At 3 % less than the tangent that friction can hold, hair stays. 2^-23 rad: rounding of
+// positions.
 static void hair_holds_on_a_slope_below_the_angle_of_friction(void **state)
 {
     (void)state;
@@ -121,7 +123,8 @@ static void hair_slides_on_a_slope_beyond_the_angle_of_friction(void **state)
         }
 }
 
-// On level ground a sliding tip loses friction g dt of its speed a step until it stops, and rests.
+// On level ground, a sliding tip loses friction g dt of its speed per step until it stops, and then
+// rests.
 static void hair_slides_to_a_halt(void **state)
 {
     (void)state;
@@ -130,7 +133,7 @@ static void hair_slides_to_a_halt(void **state)
         lay_on_plane(&fixture, SOLVERS[i].algo);
         tilt(&fixture, 3 * FRICTION);
         double before = angle_after(&fixture, 60), start = angle_after(&fixture, 1);
-        double speed = start - before, loss = FRICTION * G / (LINK * RATE * RATE); // a step
+        double speed = start - before, loss = FRICTION * G / (LINK * RATE * RATE); // per step
         int steps = (int)(speed / loss);
         double end = start + steps * (speed - 0.5 * loss * (steps + 1));
         tilt(&fixture, 0);
@@ -143,7 +146,7 @@ static void hair_slides_to_a_halt(void **state)
     }
 }
 
-// --- On a ball that turns about the vertical through the root, under the head's motion.
+// --- On a ball that rotates about the vertical through the root, with the head.
 
 // Quaternion product.
 static void turn_about_y(const double base[4], double angle, float rotation[4])
@@ -154,16 +157,15 @@ static void turn_about_y(const double base[4], double angle, float rotation[4])
     for (int k = 0; k < 4; ++k) rotation[k] = (float)product[k];
 }
 
-// The ball drags the tip by friction g along the way of its surface, as long as it is the faster
-// one; then the tip goes with it, behind by what it has lost until then: speed^2 / (2 friction g /
-// link). The link lies at beta/2 from the level, so that a step's depth in the ball is
-// cos^2(beta/2) of what it would be on a plane: 1.6 % less, which the lag may be off by (and is by
-// half of it).
+// The ball accelerates the tip by friction g along its surface as long as the ball is faster; then
+// the tip moves with it, behind by speed^2 / (2 friction g / link). The link is inclined by beta/2,
+// so that a step's depth in the ball is cos^2(beta/2) of the depth in a plane: 1.6 % less. The lag
+// may differ by that (and differs by half of it).
 static void a_turning_ball_drags_hair_along(void **state)
 {
     (void)state;
-    // The head as it is, and turned by 90 degrees about x before: then the axis of its turning is
-    // not that of its rotation.
+    // With two base rotations of the head, none and 90 degrees about x: with the latter, the axis
+    // of the motion is not the axis of the rotation.
     static const double bases[2][4] = {{0, 0, 0, 1}, {M_SQRT1_2, 0, 0, M_SQRT1_2}};
     static const char *const texts[2] = {"sphere:0,-4,0,4", "sphere:0,0,4,4"};
     static const Vec roots[2] = {{0, MARGIN, 0}, {0, 0, -MARGIN}};
@@ -185,24 +187,24 @@ static void a_turning_ball_drags_hair_along(void **state)
                 fail_msg("%s: at %g s turned by %g, not by %g", algo, t, angle, exact);
         }
         print_message("%s, base %d: lags by %.4g, ideally %.4g\n", algo, i % 2, speed - angle, lag);
-        // In the end it goes with the ball: measured 2e-5, split 1.8e-3 of the speed behind.
+        // Finally it moves with the ball: measured 2e-5; split is slower by 1.8e-3.
         assert_true(fabs((angle - late) * RATE / (40 * speed) - 1) < 5e-3);
         fixture_destroy(&fixture);
     }
 }
 
-// --- On a ball that turns far in one step.
+// --- On a ball that rotates far in one step.
 
-static const Vec BALL = {0, -4, 0}; // its middle; 4 m in radius
+static const Vec BALL = {0, -4, 0}; // its centre; its radius is 4 m
 
-// The root and the tip on the ball, above (x, z).
+// A point on the ball, above (x, z).
 static void put_on_ball(double x, double z, Vec at)
 {
     at[0] = x, at[1] = sqrt(pow(4 + MARGIN, 2) - x * x - z * z) - 4, at[2] = z;
 }
 
-// The tip of a link whose root lies off the axis, before and after the ball has turned by 60
-// degrees in a step; how deep it was pressed into the ball.
+// A link whose root is off the axis: its tip before and after a step in which the ball rotates by
+// 60 degrees. Returns how deep the tip was inside the ball.
 static double turn_far(float friction, Vec before, Vec after, Vec root_after)
 {
     HairFixture fixture;
@@ -233,10 +235,10 @@ static void cross(const Vec a, const Vec b, Vec r)
         r[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-// The place of the ball under the tip has come from where the turn took it from: not along the
-// tangent. Of the tip's slip against it friction undoes as much as friction times the depth, of
-// which the link lets it follow what lies across: but for the depth's share of the ball's radius,
-// and the way's of the link's length.
+// The ball's point under the tip has moved along the rotation's arc and not along the tangent.
+// Friction cancels the tip's slip relative to it by up to friction times depth, as far as the link
+// allows, which is across the link. The formula neglects the depth relative to the ball's radius,
+// and the path relative to the link's length.
 static void friction_acts_against_the_slip_on_a_ball_that_turns_far(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hair on the GPU: batches by vertex count and by the driver's limits, the rest shape, and the
+// Hair on the GPU: batches by vertex count and by the driver's limits, the rest shape, and uniform
 // blocks shared with shaders.
 #include "gpu/shader.h"
 #include "sim/step.h"
@@ -26,8 +26,8 @@
 
 #include <cmocka.h>
 
-// Strands of 2, 3, 4, 2, 3, 4 ... vertices along x, so far apart that a position tells strand and
-// vertex.
+// Strands of 2, 3, 4, 2, 3, 4 ... vertices along x, far enough apart that a position identifies
+// strand and vertex.
 static void make_strands(Strands *strands, uint32_t count)
 {
     uint32_t vertices = 0;
@@ -50,7 +50,7 @@ static float (*read_vectors(const GpuBuffer *buffer))[4]
     return data;
 }
 
-// Each strand stands in one batch with its own number, positions and lengths.
+// Each strand is in exactly one batch with its number, positions and lengths.
 static void check_batches(const Hair *hair, const Strands *strands, uint32_t first_id)
 {
     uint8_t *seen = calloc(strands->strand_count, 1);
@@ -105,7 +105,7 @@ static void hair_larger_than_a_buffer_is_split_never_cut(void **state)
     check_batches(&hair, &strands, 0);
     hair_destroy(&hair);
     Error error;
-    limits.storage_block = HAIR_MOST_SCRATCH * 16 * 16; // not even that
+    limits.storage_block = HAIR_MOST_SCRATCH * 16 * 16; // less than that
     assert_int_equal(hair_create(&hair, &strands, 0, &limits, &error), RESULT_FAILED);
     assert_non_null(strstr(error.text, "exceeds this driver's buffers"));
     strands_destroy(&strands);
@@ -122,7 +122,7 @@ static GLuint build(const char *shader)
     return program;
 }
 
-// The buffer must not be smaller than the block.
+// The buffer must be at least as large as the block.
 static void assert_size(GLuint program, const char *block, size_t size)
 {
     const GLenum property = GL_BUFFER_DATA_SIZE;

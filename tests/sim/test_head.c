@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A head that sets out at speed, and one that jumps, through a whole simulation.
+// A head that starts with a velocity, and a head that jumps, in a whole simulation.
 #include "sim/head.h"
 #include "support/simulation_fixture.h"
 
@@ -21,7 +21,7 @@ static void set_formulas(Formula formulas[3], const char *x, const char *y, cons
         assert_int_equal(formula_create(&formulas[i], texts[i], NULL), RESULT_OK);
 }
 
-// A head of formulas instead of keys, in still air.
+// A head moved by formulas instead of keys, in still air.
 static void create(SimulationFixture *fixture, const char *algo, const char *x, const char *turn)
 {
     simulation_fixture_create(fixture, algo, "");
@@ -32,7 +32,7 @@ static void create(SimulationFixture *fixture, const char *algo, const char *x, 
     set_formulas(fixture->scene.bodies[0].head.rotation_formula, "0", turn, "0");
 }
 
-// The tip, seen from the head.
+// The tip in the head's coordinates.
 static void read_tip(SimulationFixture *fixture, vec3 tip)
 {
     const HeadPose *head = &fixture->simulation.bodies[0].head;
@@ -59,19 +59,19 @@ static void the_start_has_the_heads_velocity(void **state)
     create(&fixture, "chain", "3*t + 5*t^2", "90*t");
     fixture.scene.bodies[0].head.pivot[0] = 0.5f;
     assert_true(head_starts_moving(&fixture.scene.bodies[0].head, &motion));
-    // The differences have float32's rounding, 2e-7 rad or m in 1e-3 s.
+    // The differences contain float32 rounding, 2e-7 rad or m in 1e-3 s.
     assert_true(fabsf(motion.spin[1] - 1.5707963f) < 1e-3f);
-    // The point at the origin goes round the pivot 0.5 m away, and along with it.
+    // The point at the origin rotates about the pivot 0.5 m away and moves along with it.
     assert_true(fabsf(motion.velocity[0] - 3) < 1e-3f);
     assert_true(fabsf(motion.velocity[2] - 0.5f * 1.5707963f) < 1e-3f);
     simulation_fixture_destroy(&fixture);
-    simulation_fixture_create(&fixture, "chain", ""); // smooth keys begin at rest
+    simulation_fixture_create(&fixture, "chain", ""); // smooth keys start at rest
     head_starts_moving(&fixture.scene.bodies[0].head, &motion);
     assert_true(glm_vec3_norm(motion.velocity) < 1e-3f && glm_vec3_norm(motion.spin) < 1e-2f);
     simulation_fixture_destroy(&fixture);
 }
 
-// Strands of 0.2 m that swing by some 5 cm: 1e-5 m is a hundred roundings of places below 2 m.
+// Strands of 0.2 m that swing by about 5 cm: 1e-5 m is a hundred roundings of positions below 2 m.
 static void hair_rides_along_from_the_first_instant(void **state)
 {
     (void)state;
@@ -93,7 +93,7 @@ static void hair_rides_along_from_the_first_instant(void **state)
     }
 }
 
-// The head is 3 m further on and turned round from t = 0.2 s on; compared with a head that stays.
+// At t = 0.2 s the head jumps 3 m and turns round. Returns the difference from a head that stays.
 static float after_a_jump(const char *algo, TeleportRule rule, uint64_t *jumps)
 {
     SimulationFixture still, jumping;
@@ -135,7 +135,7 @@ static void a_limited_jump_is_felt_less_than_a_free_one(void **state)
         fail_msg("limited %g m, free %g m", (double)limited, (double)free_jump);
 }
 
-// The limit leaves a move of just its size to be felt.
+// A jump larger than the limit is carried except for a motion of the limit's size.
 static void what_is_carried_leaves_the_limit(void **state)
 {
     (void)state;
@@ -145,7 +145,8 @@ static void what_is_carried_leaves_the_limit(void **state)
     scene->bodies[0].head.pivot[1] = 1;
     scene->run.teleport = TELEPORT_LIMIT;
     HeadPose from = {.rotation = {0, 0, 0, 1}}, to = {.translation = {2, 0, 0}}, carried;
-    glm_quatv(to.rotation, glm_rad(60), (vec3){0, 1, 0}); // leaves the pivot's x and z
+    // a rotation about a vertical axis through the pivot
+    glm_quatv(to.rotation, glm_rad(60), (vec3){0, 1, 0});
     assert_true(head_jumps(&scene->run, scene->bodies[0].head.pivot, &from, &to, &carried));
     // A quarter of 2 m is 0.5 m, of 60 degrees 15.
     assert_true(fabsf(carried.translation[0] - 1.5f) < 1e-6f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The distances to a mesh that deforms.
+// The distance field of a deforming mesh.
 #include "sim/moving_field.h"
 #include "support/body_fixture.h"
 #include "support/hair_fixture.h"
@@ -19,7 +19,7 @@ typedef struct Ball {
     Strands strands;
 } Ball;
 
-// Swells along x, and turns.
+// Stretches along x and rotates.
 static void swell(double time, const double rest[3], double place[3])
 {
     double c = cos(time), s = sin(time);
@@ -93,7 +93,7 @@ static void update(MovingField *field, const Body *body, double before, double a
     free(to);
 }
 
-// Every point against the exact distance.
+// Compares every grid point with the exact distance.
 static void check_distances(const MovingField *field, const Body *body, double time)
 {
     Mesh mesh = *body->mesh;
@@ -113,10 +113,10 @@ static void check_distances(const MovingField *field, const Body *body, double t
             assert_true(found > 0.99 * (double)field->outside);
             continue;
         }
-        // Within a spacing exact but for vertices' rounding, 1/128 of a spacing a coordinate.
-        // Farther inside a point has the nearest of its neighbours' triangles. One neighbour, a
-        // spacing away, is nearer to the surface by 1/sqrt(3) at least: so what it hands on is too
-        // far by at most 1 - 1/sqrt(3) spacings.
+        // Within one spacing, distances are exact except for vertices' rounding, 1/128 of a spacing
+        // per coordinate. Farther inside, a point has the nearest of its neighbours' triangles. One
+        // of the neighbours, a spacing away, is nearer to the surface by at least 1/sqrt(3)
+        // spacings, so that the distance to its triangle errs by at most 1 - 1/sqrt(3) spacings.
         double allowed = fabs(exact) < 0.98 * spacing ? 0.0137 * spacing : 0.43 * spacing;
         if (!(fabs(found - exact) < allowed))
             fail_msg("%zu %zu %zu: %g, exact %g (spacing %g)", at[0], at[1], at[2], found, exact,
@@ -141,8 +141,8 @@ static void distances_are_those_of_the_mesh_now(void **state)
     close_field(&field, &ball);
 }
 
-// The surface's own motion: where (x, y, z) of the ball is now, it was at x by the ratio of
-// stretches before.
+// The surface's motion: the ball's point now at (x, y, z) was before at x times the ratio of the
+// two stretches.
 static void samples_know_how_the_surface_moves(void **state)
 {
     (void)state;
@@ -155,14 +155,14 @@ static void samples_know_how_the_surface_moves(void **state)
     size_t moving = 0;
     for (size_t i = 0; i < distance_field_count(&field.field); ++i) {
         if (fabsf(texel[i][0]) > 0.2f * field.field.spacing) continue;
-        // The head, which fits the roots best, does not see the swelling's turn.
+        // The head, the best rigid fit of the roots, does not rotate with the stretching mesh.
         float x = field.field.low[0] + field.field.spacing * (float)(i % size[0]);
         float expected = x * (0.3f * 0.1f) / (1 + 0.3f * 0.6f);
         assert_true(fabsf(texel[i][1] - expected) < 0.1f * fabsf(expected) + 2e-4f);
         moving += fabsf(expected) > 1e-3f;
     }
     assert_true(moving > 20);
-    update(&field, &ball.body, 0.6, 0.6); // rests
+    update(&field, &ball.body, 0.6, 0.6); // no motion
     free(texel);
     texel = gpu_buffer_read(&field.field.values);
     for (size_t i = 0; i < distance_field_count(&field.field); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pose of strands that hang at rest, beside its definition in double precision.
+// The pose of strands at rest against its definition in double precision.
 #include "sim/pose.h"
 
 #include "base/random.h"
@@ -21,7 +21,8 @@ typedef float Float4[4];
 static const double PI = 3.14159265358979323846;
 static const double SHARES[] = {0.2, 0.5, 0.7};
 
-// Degrees between a segment and the way that hair hangs; the last ones fade.
+// Angle in degrees between a segment and the direction of gravity; the last ones are in the range
+// where the style's share changes.
 static const double ANGLES[] = {0, 1e-3, 1, 30, 90, 120, 149, 151, 165, 178, 179.9, 180};
 enum { ANGLE_COUNT = sizeof ANGLES / sizeof *ANGLES };
 
@@ -57,7 +58,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// x by the quaternion (s, c), which need not be a unit.
+// Rotates x by the quaternion (s, c), which need not be normalised.
 static void rotate(const double s[3], double c, double x[3])
 {
     double t[3], u[3], square = dot(s, s) + c * c;
@@ -133,8 +134,9 @@ static void get(const Float4 from, double to[3])
     for (int k = 0; k < 3; ++k) to[k] = (double)from[k];
 }
 
-// The style's direction d turned by 1 - style of the angle from the hanging way h to the physical
-// segment b; where that is more than 150 degrees, by a share that fades to the nearer of 0 and 1.
+// The style's direction d is turned by 1 - style of the angle from the hanging direction h to the
+// physical segment b. If that angle is more than 150 degrees, the share fades to the nearer of 0
+// and 1.
 static void define(const Stage *stage, const double b[3], double style, double d[3])
 {
     const double *h = stage->hanging;
@@ -154,20 +156,21 @@ static double find_turned(const double b[3], const double h[3])
     return sqrt(fmax(0.5 + 0.5 * dot(b, h), 0));
 }
 
-// A drawn direction's rounding, in each coordinate. Positions are sums of 20 directions: within 9
-// m, where their difference is off by 2^-21. Products and sums of head and turn round about 8
-// times, by 2^-24 each. A root and a division make the tangent of half the turn, which turns what
-// is drawn by as much; one more division makes the turn, of which it moves up to twice. Each is off
-// by half a unit, 2^-24, or as often as fixture_rounding() says.
+// Rounding of a drawn direction, per coordinate. Positions are sums of 20 directions, within 9 m,
+// so that a difference errs by 2^-21. Products and sums for the head and the rotation round about 8
+// times, by 2^-24 each. A root and a division give the tangent of half the rotation, which rotates
+// by as much; another division gives the rotation, with up to twice the effect. Each errs by half a
+// unit, 2^-24, or by fixture_rounding() times that.
 static double find_rounding(void)
 {
     return (4 + fixture_rounding()) * 0x1p-22;
 }
 
-// What is added as a segment turns to where it points upwards. The cosine of half the angle to the
-// hanging way, the root of a sum that rounds to 2^-24, is off by 2^-25 over itself, which turns
-// what is drawn by about as much, less than 2^-22 / cosine with the axis. The share fades by the
-// cosine's square, times 4/0.27 (define()): it is off by the slope there times 2^-24.
+// The additional error when a segment points almost upwards. The cosine of half the angle to the
+// hanging direction is the root of a sum that is rounded to 2^-24, and errs by 2^-25 divided by
+// itself. That rotates what is drawn by about as much; with the axis, by less than 2^-22 / cosine.
+// The share fades with the square of the cosine, times 4/0.27 (define()), and errs by the slope
+// there times 2^-24.
 static double find_rounding_near_axis(double cosine)
 {
     double near = fmin(cosine * cosine * 4 / 0.27, 1), slope = 6 * near * (1 - near) * 4 / 0.27;
@@ -198,7 +201,7 @@ static void hanging_hair_turns_its_style(void **state)
                 length = sqrt(dot(got, got));
                 if (!(fabs(length - 1) < sqrt(3) * find_rounding()))
                     fail_msg("style %g: a segment's length is off by %g", SHARES[i], length - 1);
-                if (cosine < 4e-4) continue; // rounding decides about the axis
+                if (cosine < 4e-4) continue; // rounding decides the axis
                 double most = find_rounding() + find_rounding_near_axis(cosine);
                 if (!(off < most))
                     fail_msg("style %g, %g degrees: off by %g, at most %g", SHARES[i],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// --rest groom: hair with a style is at rest where its file has it, and lives on from there.
+// --rest groom: styled hair is at rest in its file's shape, and moves from there.
 #include "support/hair_fixture.h"
 #include "support/simulation_fixture.h"
 
@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-// The fixture's hair on a head that stands still from time 0 on, turned about z by `tilt` (rad).
+// The fixture's hair on a head that is still from time 0 on, rotated about z by `tilt` (rad).
 static void create(SimulationFixture *fixture, const char *algo, const char *variant, float tilt,
                    int rate)
 {
@@ -40,7 +40,7 @@ static Float3 *read_positions(SimulationFixture *fixture, int frame)
     return positions;
 }
 
-// The mean over all particles of how far they are from where they were, over the longest length.
+// Mean distance of all particles from their earlier positions, relative to the longest strand.
 static double displacement(SimulationFixture *fixture, Float3 *from, int frame)
 {
     const Hair *hair = &fixture->simulation.sections[0].hair;
@@ -110,7 +110,7 @@ static void hanging_hair_falls_from_its_style(void **state)
     simulation_fixture_each(check_hanging);
 }
 
-// A head that tilts by a right angle after time 0 leaves gravity across the hair.
+// A head that tilts by a right angle after time 0, so that gravity acts across the hair.
 static void check_tilt(const char *algo, const char *variant)
 {
     const float turned[3] = {0, 0, 1.5f};
@@ -122,7 +122,7 @@ static void check_tilt(const char *algo, const char *variant)
     const Hair *hair = &fixture.simulation.sections[0].hair;
     Float3 *start = read_positions(&fixture, 0), *tilted = read_positions(&fixture, 240);
     double sum = 0, c = cos((double)turned[2]), s = sin((double)turned[2]);
-    for (uint64_t i = 0; i < hair->particle_count; ++i) { // from where a stiff groom would be
+    for (uint64_t i = 0; i < hair->particle_count; ++i) { // compared with a stiff groom
         double x = c * (double)start[i][0] - s * (double)start[i][1] - (double)tilted[i][0],
                y = s * (double)start[i][0] + c * (double)start[i][1] - (double)tilted[i][1];
         sum += sqrt(x * x + y * y);
@@ -140,7 +140,7 @@ static void a_tilted_head_lets_hair_fall(void **state)
     simulation_fixture_each(check_tilt);
 }
 
-// Keyed gravity: the groom holds against what it is at time 0, and falls when it changes.
+// Keyed gravity: the groom balances gravity at time 0, and falls when gravity changes.
 static void only_the_first_gravity_is_held(void **state)
 {
     (void)state;

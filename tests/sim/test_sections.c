@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sections of one scene: each moves as if it were alone, and what rests costs nothing.
+// Sections of one scene: each moves as it would alone, and a section at rest costs nothing.
 #include "gen/strands_make.h"
 #include "sim/simulation.h"
 #include "support/hair_fixture.h"
@@ -13,7 +13,7 @@
 
 enum { MOST = 4, FRAMES = 40 };
 
-// What a section is made of.
+// How a section is made.
 typedef struct Kind {
     const char *algo;
     uint32_t strands, vertices;
@@ -45,7 +45,7 @@ static void add_section(World *world, const Kind *kind)
     params_destroy_section(&params);
 }
 
-// Wind in gusts and a head that moves: everything that could tell one strand from another.
+// Gusts of wind and a moving head: everything that depends on a strand's number or position.
 static void create(World *world, const Kind *kinds, int count)
 {
     *world = (World){0};
@@ -124,18 +124,17 @@ static void sections_move_as_if_they_were_alone(void **state)
                                 *b = &together.simulation.sections[i];
         assert_true(same_hair(&a->hair, &b->hair));
         assert_true(same_hair(&a->follow.hair, &b->follow.hair));
-        // The comparison can fail.
+        // Shows that the comparison can fail.
         if (i > 0) assert_false(same_hair(&a->hair, &together.simulation.sections[0].hair));
         destroy(&alone);
     }
     destroy(&together);
 }
 
-// Still beside moving: a section of the style alone, and one that has fallen asleep, are neither
-// stepped nor posed while the third moves on.
+// A static section and a sleeping section are neither stepped nor posed while a third one moves.
 static void still_sections_are_left_alone(void **state)
 {
-    // Drag 0: this swings for ever.
+    // drag 0: the third swings for ever
     static const Kind kinds[] = {
         {"none", 5, 6, 1, 1, 2}, {"tressfx", 8, 8, 0.9f, 20, 0}, {"split", 4, 8, 0, 0, 0}};
     (void)state;

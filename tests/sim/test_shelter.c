@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Wind behind the head.
+// Wind in the shelter of the head.
 #include "support/hair_fixture.h"
 
 #include <math.h>
@@ -10,14 +10,15 @@
 
 #include <cmocka.h>
 
-// Strands that hang from roots 10 cm before, beside and behind the head's middle in wind along x.
+// Strands that hang from roots 10 cm in front of, beside and behind the head's centre, in wind
+// along x.
 enum { BEFORE, BESIDE, BEHIND, STRANDS, N = 8 };
 
 typedef struct Bends {
-    float x[STRANDS]; // m: how far the tips are blown along
+    float x[STRANDS]; // m: how far the wind moves the tips
 } Bends;
 
-static bool oblique; // the root behind is half beside
+static bool oblique; // the root behind is at 45 degrees to the side
 
 static Bends blow(const char *algo, float share, float head_speed, float wind)
 {
@@ -48,7 +49,7 @@ static Bends blow(const char *algo, float share, float head_speed, float wind)
     return bends;
 }
 
-// All solvers that step; --variant's default.
+// All solvers with steps, each with its default variant.
 static void check_lee(const char *algo)
 {
     Bends open = blow(algo, 0, 0, 3), half = blow(algo, 0.5f, 0, 3), lee = blow(algo, 1, 0, 3);
@@ -69,8 +70,8 @@ static void hair_in_the_lee_hangs_still(void **state)
         if (!solver_is_static(*type)) check_lee((*type)->name);
 }
 
-// Between beside and behind the shelter grows smoothly, by 3 c^2 - 2 c^3 of the cosine c: at 45
-// degrees hair feels a wind that is weaker by that share.
+// From the side to the back, shelter grows smoothly with 3 c^2 - 2 c^3, where c is the cosine: at
+// 45 degrees, the wind is weaker by that share.
 static void it_grows_smoothly_towards_the_lee(void **state)
 {
     (void)state;
@@ -82,8 +83,8 @@ static void it_grows_smoothly_towards_the_lee(void **state)
     assert_true(fabsf(half.x[BEHIND] - weaker.x[BEHIND]) < 1e-5f);
 }
 
-// A head that runs into still air is sheltered on its other side, as one at rest in wind. (The
-// first steps differ: hair that has no velocity yet is torn along.)
+// A head that moves through still air shelters hair behind it, like a head at rest in wind. (The
+// first steps differ, because the hair's initial velocity is 0.)
 static void motion_counts_like_wind(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From steps to frames: the clocks, frames between steps, the warm-up, sub-steps by themselves.
+// From steps to frames: clocks, frames between steps, warm-up, automatic sub-steps.
 #include "mesh/scalp.h"
 #include "support/hair_fixture.h"
 #include "support/simulation_fixture.h"
@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-// A run at its own rate of 120 Hz.
+// A run with a simulation rate of 120 Hz.
 static void start(SimulationFixture *fixture, const char *algo, const char *variant, float fps,
                   float speed)
 {
@@ -33,7 +33,7 @@ static void schedules_name_step_and_share(void **state)
     run.fps = 50;
     run.preroll = 0.1f;
     schedule = schedule_create(&run, 1);
-    assert_int_equal(schedule.settling, 12); // 0.1f is a little more than 0.1
+    assert_int_equal(schedule.settling, 12); // 0.1f is slightly more than 0.1
     ScheduledFrame frame = schedule_frame(&schedule, &run, 3);
     assert_int_equal(frame.step, 7);
     assert_true(fabsf(frame.share - 0.2f) < 1e-6f && frame.time == 3.0 / 50);
@@ -42,7 +42,7 @@ static void schedules_name_step_and_share(void **state)
     run.speed = 0.25f;
     schedule = schedule_create(&run, 3);
     assert_true(schedule.steps_per_s == 600 && schedule.steps_per_frame == 3);
-    // Rates of television: no drift within a day, 2 million frames.
+    // TV frame rates: no drift within a day of 2 million frames.
     run = (RunParams){.fps = 24000 / 1001.f, .speed = 1, .sim_rate = 5 * (24000 / 1001.f)};
     schedule = schedule_create(&run, 1);
     for (int i = 0; i < 2000000; i += 997)
@@ -50,8 +50,8 @@ static void schedules_name_step_and_share(void **state)
                     schedule_frame(&schedule, &run, i).share == 0);
 }
 
-// 24, 60 and 48 frames a second are 5, 2 and 2.5 steps of 120 Hz: they meet every 1/12 s, and what
-// lies between two steps leaves no trace in what follows.
+// At 24, 60 and 48 frames per second, a frame takes 5, 2 and 2.5 steps of 120 Hz. They coincide
+// every 1/12 s, and drawing between two steps does not affect what follows.
 static void check_rates(const char *algo, const char *variant)
 {
     SimulationFixture film, video, between;
@@ -81,7 +81,7 @@ static void the_frames_rate_does_not_change_the_motion(void **state)
     simulation_fixture_each(check_rates);
 }
 
-// Drawing more often than stepping: 90 fps of 30 Hz lie at thirds.
+// More frames than steps: 90 fps at 30 Hz lie at thirds of a step.
 static void frames_between_steps_lie_between_them(void **state)
 {
     (void)state;
@@ -101,14 +101,14 @@ static void frames_between_steps_lie_between_them(void **state)
         for (int k = 0; k < 3; ++k)
             for (int i = 1; i < 3; ++i) {
                 float expected = p[0][k] + (float)i / 3 * (p[3][k] - p[0][k]);
-                // Coordinates below 2 are rounded to 2^-24 of it, a few times on the way.
+                // Coordinates below 2 are rounded to 2^-24 of that a few times.
                 assert_true(fabsf(p[i][k] - expected) < 1e-6f);
             }
     }
     simulation_fixture_destroy(&fixture);
 }
 
-// The first vertex is on the head whatever lies between two steps.
+// The first vertex stays on the head, also between steps.
 static void check_roots(const char *algo, const char *variant)
 {
     SimulationFixture fixture, still;
@@ -149,7 +149,7 @@ static void slow_motion_shows_the_same_motion_more_often(void **state)
     assert_int_equal(plain.simulation.step, slow.simulation.step);
     simulation_fixture_destroy(&plain);
     simulation_fixture_destroy(&slow);
-    // Without a rate of its own it steps once a frame.
+    // Without --sim-rate there is one step per frame.
     simulation_fixture_create(&slow, "split", "");
     slow.scene.run.speed = 0.25f;
     simulation_fixture_start(&slow);
@@ -159,7 +159,7 @@ static void slow_motion_shows_the_same_motion_more_often(void **state)
     simulation_fixture_destroy(&slow);
 }
 
-// It stands as the warm-up leaves it; the head, too, which moves otherwise.
+// Everything stays as the warm-up leaves it, also the head, which moves otherwise.
 static void at_speed_0_everything_stands(void **state)
 {
     (void)state;
@@ -176,7 +176,7 @@ static void at_speed_0_everything_stands(void **state)
     simulation_fixture_destroy(&fixture);
 }
 
-// With constant forces and the head at rest, the warm-up is the run's own beginning.
+// With constant forces and the head at rest, the warm-up equals the run's own start.
 static void the_warm_up_is_simulated_with_the_head_at_rest(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void the_warm_up_is_simulated_with_the_head_at_rest(void **state)
     simulation_fixture_go(&plain, 30);
     assert_true(simulation_fixture_hash(&plain) != first);
     assert_true(simulation_fixture_hash(&settled) == simulation_fixture_hash(&plain));
-    // Then the head moves on from its first pose.
+    // Then the head moves from its first pose.
     simulation_fixture_go(&settled, 1);
     assert_true(settled.simulation.bodies[0].head.translation[0] != 0);
     simulation_fixture_destroy(&settled);
@@ -219,7 +219,7 @@ static void automatic_substeps_are_the_fewest_stable_ones(void **state)
     assert_true(simulation_stability(&fixture.strands, g, 1.0 / 24 / chosen) <= 1.6f);
     assert_true(simulation_stability(&fixture.strands, g, 1.0 / 24 / (chosen - 1)) > 1.6f);
     simulation_fixture_destroy(&fixture);
-    // Who is stable at any step gets one; impossible numbers are refused.
+    // Solvers that are stable with any step get one sub-step; impossible numbers are refused.
     simulation_fixture_create(&fixture, "split", "");
     fixture.scene.run.substeps.automatic = true;
     simulation_fixture_start(&fixture);
@@ -251,7 +251,7 @@ static void a_strand_of_n_has_the_stability_number_of_its_links(void **state)
     strands_destroy(&strands);
 }
 
-// Spacing of the field of distances that the simulation makes of a mesh; 0: it makes none.
+// Spacing of the distance field that the simulation makes of a mesh; 0: no field.
 static float spacing_of(const char *algo, bool mesh, bool section)
 {
     SimulationFixture fixture;

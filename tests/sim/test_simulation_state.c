@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A saved and restored simulation equals one that never stopped, to the bit.
+// A simulation that was saved and restored equals an uninterrupted one to the bit.
 #include "sim/simulation_state.h"
 #include "support/simulation_fixture.h"
 
@@ -28,7 +28,7 @@ static void save(SimulationFixture *fixture, Bytes *saved)
         fail_msg("%s", error.text);
 }
 
-// Saved at frame `at`, which is drawn in the other run, too; then to the end.
+// Saves at frame `at`, which the other run draws too, then continues to the end.
 static void check_at(const char *algo, const char *variant, float rate, int at)
 {
     SimulationFixture whole, broken, resumed;
@@ -39,7 +39,7 @@ static void check_at(const char *algo, const char *variant, float rate, int at)
     start(&resumed, algo, variant, rate);
     simulation_fixture_go(&broken, at);
     save(&broken, &saved);
-    simulation_fixture_go(&resumed, at / 2); // whatever was there is overwritten
+    simulation_fixture_go(&resumed, at / 2); // existing state must be overwritten
     if (simulation_state_restore(&resumed.simulation, &saved, &error) != RESULT_OK)
         fail_msg("%s %s: %s", algo, variant, error.text);
     for (int frame = at; frame <= LAST; ++frame) {
@@ -48,7 +48,7 @@ static void check_at(const char *algo, const char *variant, float rate, int at)
         if (simulation_fixture_hash(&whole) != simulation_fixture_hash(&resumed))
             fail_msg("%s %s at %g Hz: saved at frame %d, frame %d differs", algo, variant,
                      (double)rate, at, frame);
-        // To be saved leaves no trace either.
+        // Saving must not affect the run.
         simulation_fixture_go(&broken, frame);
         assert_true(simulation_fixture_hash(&whole) == simulation_fixture_hash(&broken));
     }
@@ -61,7 +61,7 @@ static void check_at(const char *algo, const char *variant, float rate, int at)
 static void check_solver(const char *algo, const char *variant)
 {
     check_at(algo, variant, 0, 3);
-    check_at(algo, variant, 25, 4); // 60 fps of 25 Hz: frames 3 and 4 lie between the same steps
+    check_at(algo, variant, 25, 4); // 60 fps at 25 Hz: frames 3 and 4 lie between the same steps
 }
 
 static void every_solver_goes_on_as_if_it_had_not_stopped(void **state)
@@ -81,7 +81,8 @@ static void saved_with_one_thing_and_read_with_another_is_refused(void **state)
     save(&chain, &saved);
     assert_int_equal(simulation_state_restore(&split.simulation, &saved, &error), RESULT_BAD_INPUT);
     for (size_t size = 0; size < saved.size; size += 1 + saved.size / 200) {
-        Bytes cut = {.data = malloc(size + 1), .size = size}; // its own piece for the sanitizer
+        // memory of its own, so that the sanitizer sees reads past the end
+        Bytes cut = {.data = malloc(size + 1), .size = size};
         memcpy(cut.data, saved.data, size);
         assert_int_equal(simulation_state_restore(&chain.simulation, &cut, &error),
                          RESULT_BAD_INPUT);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sleep changes positions by at most its tolerance; everything that moves hair ends it.
+// Sleep changes positions by less than its tolerance; everything that moves hair wakes it.
 #include "gen/strands_make.h"
 #include "sim/simulation_state.h"
 #include "support/hair_fixture.h"
@@ -31,7 +31,7 @@ static void create_scene(World *world, const char *algo, float drag, float toler
     assert_int_equal(params_parse(params_find("algo"), &params, algo, NULL), RESULT_OK);
     params.drag = drag;
     params.sleep = tolerance;
-    params.rest = REST_HANGING; // what falls comes to rest after a while
+    params.rest = REST_HANGING; // falling hair comes to rest after a while
     assert_int_equal(scene_add_section(&world->scene, "waves", &params, NULL), RESULT_OK);
     params_destroy_section(&params);
 }
@@ -71,7 +71,7 @@ static void advance(World *world, double seconds)
     for (int i = 0; i < (int)(seconds * FPS); ++i) simulation_advance(&world->simulation);
 }
 
-// Until it sleeps or the time has come (s); returns which.
+// Simulates until the hair sleeps or the time has come (s); returns whether it sleeps.
 static bool falls_asleep(World *world, double latest)
 {
     while (!is_asleep(world) && world->simulation.frame < latest * FPS)
@@ -91,7 +91,7 @@ static Float4 *read_positions(World *world)
     return positions;
 }
 
-// The largest distance between two worlds' particles over the length of the strand.
+// The largest distance between two worlds' particles, relative to the strand's length.
 static double distance_of(World *a, World *b)
 {
     const Hair *hair = &a->simulation.sections[0].hair;
@@ -109,8 +109,8 @@ static double distance_of(World *a, World *b)
     return worst;
 }
 
-// The worst distance from what never sleeps, over a minute from when the hair falls asleep on, or
-// over the first 100 s if it does not.
+// The largest difference from hair that never sleeps, over one minute after the hair has fallen
+// asleep, or over the first 100 s if it has not.
 static double cost_of_sleep(const char *algo, float drag, float tolerance, bool *sleeps)
 {
     World awake, sleeper;
@@ -137,11 +137,11 @@ static double cost_of_sleep(const char *algo, float drag, float tolerance, bool 
     return worst;
 }
 
-// Of hair that is awake after 100 s, by the rule in sleep.h: where no particle goes farther than
-// t/8 from where it was, any two of its places are within t/4. Then it leaves the anchor that it
-// has at most once, and the next one, a place of its own, never. An anchor starts the time of being
-// calm anew when it is taken and at most 15 times more, by t/60 each up to t/4, and that time is at
-// most 2 s + 120 s/4.
+// For hair that is still awake after 100 s: checks the conditions of the rule in sleep.h. If no
+// particle moves farther than t/8 from where it was, any two of its positions are within t/4. It
+// then leaves its present anchor at most once, and the next one, which is one of its own positions,
+// never. A particle's calm time restarts when an anchor is taken and at most 15 more times, each
+// time by t/60 up to t/4, and the required calm time is at most 2 s + 120 s/4.
 static bool sleeps_if_still(const char *algo, float drag, float tolerance)
 {
     enum { CALM_S = 32, LATEST_S = 100 + 2 * 16 * CALM_S };
@@ -177,14 +177,14 @@ static void sleeping_is_within_the_tolerance(void **state)
         const float drag = cases[i].drag, tolerance = cases[i].tolerance;
         bool sleeps;
         double cost = cost_of_sleep(algo, drag, tolerance, &sleeps);
-        // Coarser rounding may keep hair awake for longer.
+        // With larger rounding errors, hair may stay awake longer.
         assert_true(sleeps || (fixture_rounding() > 1 && sleeps_if_still(algo, drag, tolerance)));
         assert_true(cost < (double)tolerance);
     }
 }
 
-// In very thick air split creeps on for minutes. It may fall asleep as soon as what is left is
-// within the tolerance, not before; a rule that looked at the speed alone would fail here.
+// In very viscous air, split creeps for minutes. Hair may sleep as soon as its remaining motion is
+// within the tolerance, and no earlier; a rule that considered speed alone would fail here.
 static void creeping_hair_does_not_sleep(void **state)
 {
     (void)state;
@@ -200,7 +200,7 @@ static void creeping_hair_does_not_sleep(void **state)
     destroy(&later);
 }
 
-// Gives the scene's force two keys: constant, and different from `time` on.
+// Gives the scene's force two constant values, before and after `time`.
 static void change_at(Keyframes *keys, double time, const float before[3], const float after[3])
 {
     keys->interpolation = INTERPOLATION_LINEAR;
@@ -211,7 +211,7 @@ static void change_at(Keyframes *keys, double time, const float before[3], const
 
 enum { WOKEN_S = 60 };
 
-// That hair which sleeps before WOKEN_S is awake after it, moves, and sleeps again.
+// Checks that hair which sleeps before WOKEN_S is awake afterwards, moves, and sleeps again.
 static void check_wakes(World *world)
 {
     start(world);
@@ -277,7 +277,7 @@ static void nobody_sleeps_in_gusts_or_without_tolerance(void **state)
     destroy(&world);
 }
 
-// Saved on the way to sleep or in it, the hair goes on to the same sleep in the same step.
+// Saved before or during sleep, the hair falls asleep in the same step.
 static void sleep_is_part_of_the_state(void **state)
 {
     (void)state;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The rule of sleep (sim/sleep.h) just within and just beyond each of its numbers: strands whose
-// tips are put where the test wants them before each check. Whole scenes are in test_sleep.c.
+// The rule of sleep (sim/sleep.h) just below and just above each of its thresholds: before each
+// check, the test puts the strands' tips where it wants them. Whole scenes are tested in
+// test_sleep.c.
 #include "sim/sleep.h"
 #include "support/hair_fixture.h"
 
@@ -14,7 +15,7 @@
 
 #include <cmocka.h>
 
-// Steps of a second, so that each is checked and 2 calm checks are the 2 s of the rule.
+// Steps of one second, so that there is a check after each and 2 calm checks make the rule's 2 s.
 enum { STRANDS = 8, PAIR = 2, CALM_CHECKS = 2 };
 static const double TOLERANCE = 0.01, LEAVE = 1.0 / 4, GROW = 1.0 / 60, REACH_S = 120;
 
@@ -45,7 +46,7 @@ static void destroy(Trial *trial)
     fixture_destroy(&trial->fixture);
 }
 
-// A step and its check, with the tips aside by ways[] tolerances.
+// One step and its check, with the tips displaced by ways[] tolerances.
 static void check(Trial *trial, const double ways[STRANDS])
 {
     const HairBatch *batch = &trial->fixture.hair.batches[0];
@@ -61,8 +62,8 @@ static void check(Trial *trial, const double ways[STRANDS])
     assert_int_equal(trial->sleep.checks, before + 1);
 }
 
-// Checks until the next one is number `next`, which is a power of two that gives strands that are
-// not ready new anchors where they are then, at 0. None is ready: all were far to and fro before.
+// Checks until the next check has the number `next`, a power of two, after which strands that are
+// not ready get new anchors at their position, 0. None is ready, because all moved far before.
 static void begin_at(Trial *trial, int next)
 {
     double ways[STRANDS];
@@ -73,7 +74,7 @@ static void begin_at(Trial *trial, int next)
     }
 }
 
-// How many checks in a row have found each strand calm, and whether it is ready.
+// Checks how many successive checks have found each strand calm, and whether it is ready.
 static void require_calm(const Trial *trial, const uint32_t expected[STRANDS])
 {
     uint32_t *calm = gpu_buffer_read(&trial->sleep.batches[0].calm);
@@ -85,7 +86,7 @@ static void require_calm(const Trial *trial, const uint32_t expected[STRANDS])
     free(calm);
 }
 
-// A particle that leaves its anchor gets another one there, and may then go back as far.
+// A particle that leaves its anchor gets a new one there, and may then move back as far.
 static void strands_leave_their_anchors_beyond_a_quarter(void **state)
 {
     (void)state;
@@ -96,13 +97,13 @@ static void strands_leave_their_anchors_beyond_a_quarter(void **state)
     begin_at(&trial, 8);
     check(&trial, out);
     require_calm(&trial, (const uint32_t[STRANDS]){0, 0, 0, 0, 1, 1, 1, 1});
-    check(&trial, back); // calm for those that have their anchors here, away from it for others
+    check(&trial, back); // calm for strands whose anchors are here; too far for the others
     require_calm(&trial, (const uint32_t[STRANDS]){1, 0, 1, 0, 2 | SLEEP_READY, 2 | SLEEP_READY,
                                                    2 | SLEEP_READY, 2 | SLEEP_READY});
     destroy(&trial);
 }
 
-// Farther than ever by up to a sixtieth is calm. What comes little by little adds up.
+// A distance that exceeds the previous maximum by up to a sixtieth is calm. Small increases add up.
 static void growth_beyond_a_sixtieth_is_not_calm(void **state)
 {
     (void)state;
@@ -120,8 +121,8 @@ static void growth_beyond_a_sixtieth_is_not_calm(void **state)
     destroy(&trial);
 }
 
-// Calm for 2 s, and for 120 s more for each tolerance of trembling, are enough: 14 checks in a row
-// for what trembles by a tenth of the tolerance, 15 beyond it.
+// Strands must be calm for 2 s plus 120 s for each tolerance of trembling: 14 successive checks if
+// they tremble by a tenth of the tolerance, and 15 for slightly more.
 static void trembling_strands_wait_for_longer(void **state)
 {
     (void)state;
@@ -131,7 +132,7 @@ static void trembling_strands_wait_for_longer(void **state)
     Trial trial;
     create(&trial);
     begin_at(&trial, 16);
-    check(&trial, ways); // the first two have come farther: not calm
+    check(&trial, ways); // the first two have moved farther: not calm
     for (int i = 0; i < CHECKS - 1; ++i) check(&trial, ways);
     uint32_t still = CHECKS | SLEEP_READY;
     require_calm(&trial, (const uint32_t[STRANDS]){CHECKS - 1, CHECKS - 1, still, still, still,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Chain on the GPU against its double-precision form and the reference traces; its bending. What it
-// shares with others that converge is in test_solvers_convergent.c.
+// Chain on the GPU against its double-precision form and reference traces; bending. Properties
+// shared by all convergent solvers are in test_solvers_convergent.c.
 #include "support/reference_bend.h"
 #include "support/reference_chain.h"
 #include "support/reference_traces.h"
@@ -25,9 +25,9 @@ static void bent_alone(SectionParams *params)
 
 static const TwinPair PAIR = {"chain", "", reference_chain_step, false};
 
-// Three times what was measured, the larger of a CPU with and without AVX. Strands without much
-// drag are chaotic (a curl's start rounding grows to 1e-4 within 0.6 to 1.5 s), so those are
-// compared while float32 can follow.
+// Bounds are three times the measured values, the larger of a CPU with and without AVX. Strands
+// with little drag are chaotic (rounding at a curl's start grows to 1e-4 within 0.6 to 1.5 s) and
+// are compared only while float32 can follow.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -40,8 +40,8 @@ static void it_equals_its_double_precision_twin(void **state)
     twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
-// The second is chaotic in its first seconds and comes to the same swing again: 5e-5 by one
-// rounding, more by others.
+// The second case is chaotic in its first seconds and then returns to the same swing: 5e-5 with one
+// kind of rounding, more with others.
 static void strands_through_memory_equal_the_twin_too(void **state)
 {
     (void)state;
@@ -54,10 +54,10 @@ static void strands_through_memory_equal_the_twin_too(void **state)
     twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
-// A head that jumps by 40 cm leaves segments off by a share that the strand's length decides: short
-// ones are rescued by tractrices, long ones are not, and each as the twin is. Of the lengths, 0.1
-// to 0.4 m in steps of 0.55 %, one may lie so near the threshold that rounding decides. Measured
-// for the others: 4e-7; three times that.
+// A head that jumps by 40 cm leaves errors in segments, relative to a threshold that depends on the
+// strand's length: tractrices replace the solve for short strands and not for long ones, equally in
+// the double-precision form. Lengths are 0.1 to 0.4 m in steps of 0.55 %, and for one of them
+// rounding may decide. Measured for the others: 4e-7; three times that is allowed.
 static void violent_steps_are_rescued_from_the_twins_threshold_on(void **state)
 {
     (void)state;
@@ -108,7 +108,8 @@ static void it_equals_the_reference_traces(void **state)
 
 // --- Bending and twist.
 
-// Three times what was measured, while the account takes nothing; then it passes rounding on.
+// Three times the measured values while the energy guard is inactive; once active, it amplifies
+// rounding.
 static void bending_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -126,7 +127,7 @@ static void bending_equals_its_double_precision_twin(void **state)
     }
 }
 
-// A number from -1 to 1 for each i.
+// A pseudo-random number from -1 to 1 for each i.
 static double scatter(uint32_t i)
 {
     i = (i ^ i >> 15) * 0x9e3779b1u;
@@ -134,8 +135,8 @@ static double scatter(uint32_t i)
     return (double)(i ^ i >> 16) / 0x7fffffff - 1;
 }
 
-// Strands of a curl's style whose segments point anywhere, half of them nearly back along the one
-// before, with velocities of up to 1 m/s.
+// Strands with a curl's style whose segments have random directions, half of them almost opposite
+// to the previous one, with velocities of up to 1 m/s.
 static void crumple(TwinStrand *strand, uint32_t seed)
 {
     Vec before = {1, 0, 0};
@@ -153,8 +154,8 @@ static void crumple(TwinStrand *strand, uint32_t seed)
     }
 }
 
-// One step from there: what folded joints hand on is bounded, and the twist near a fold is. Three
-// times what was measured of the middle one, of the tenth that is most off, and of the worst.
+// One step from that state: folded joints have bounded forces, also in twist. Bounds are three
+// times the measured value of the median, of the 90th percentile and of the largest error.
 static void bending_of_crumpled_strands_equals_the_twins(void **state)
 {
     (void)state;
@@ -192,7 +193,7 @@ static void bending_of_crumpled_strands_equals_the_twins(void **state)
     fixture_destroy(&fixture);
 }
 
-// A helix that hangs, of radius 3 cm, 15 cm long.
+// A hanging helix with a radius of 3 cm, 15 cm long.
 static void make_helix(Vec *q, int n, double turns)
 {
     for (int j = 0; j < n; ++j) {
@@ -201,7 +202,7 @@ static void make_helix(Vec *q, int n, double turns)
     }
 }
 
-// The gradient is that of the energy, by differences.
+// The gradient equals finite differences of the energy.
 static void bending_forces_are_the_gradient_of_its_energy(void **state)
 {
     (void)state;
@@ -214,7 +215,7 @@ static void bending_forces_are_the_gradient_of_its_energy(void **state)
     twin_start(&strand, N, (const Vec *)q);
     for (int j = 1; j < N; ++j)
         for (int k = 0; k < 3; ++k) r[j][k] = q[j][k] - q[j - 1][k] + 0.01 * sin(7 * j + 3 * k);
-    for (int j = 1; j < N; ++j) { // the gradient is for segments of their lengths
+    for (int j = 1; j < N; ++j) { // the gradient assumes segments of their exact lengths
         double scale = strand.length[j] / vec_norm(r[j]);
         for (int k = 0; k < 3; ++k) r[j][k] *= scale;
     }
@@ -280,8 +281,8 @@ static void bends_rest_where_the_style_is_and_turn_with_their_root(void **state)
     }
 }
 
-// How far the tip of a straight strand of n particles, 0.25 m long and held horizontally, hangs
-// below its root after `seconds`, over the length.
+// A straight strand of n particles, 0.25 m long, is held horizontally. Returns how far its tip is
+// below its root after `seconds`, relative to the length.
 static double drop_after(int n, double rate, double seconds, void (*tune)(SectionParams *params))
 {
     Vec start[64] = {{0}}, q[64];
@@ -295,8 +296,9 @@ static double drop_after(int n, double rate, double seconds, void (*tune)(Sectio
     return -q[n - 1][1] / 0.25;
 }
 
-// The exact rest of 15 and of 31 links with K = 50, K n^2 l sin(turn of a joint) = moment of all
-// that hangs beyond it, drops by 0.3983 and 0.5943 (tractrix-bench accuracy --part beam).
+// The exact rest positions of 15 and 31 links with K = 50, where at each joint K n^2 l sin(turn)
+// equals the moment of everything beyond it, are lower by 0.3983 and 0.5943 (tractrix-bench
+// accuracy --part beam).
 static void rest_under_load_is_exact_at_any_step(void **state)
 {
     (void)state;
@@ -309,7 +311,7 @@ static void rest_under_load_is_exact_at_any_step(void **state)
     }
 }
 
-// With the style's springs as well: none of the forces may weigh more than another at long steps.
+// Also with the style's springs: with long steps, all forces must have the same weight.
 static void rest_under_load_and_springs_does_not_depend_on_the_step(void **state)
 {
     (void)state;
@@ -318,8 +320,8 @@ static void rest_under_load_and_springs_does_not_depend_on_the_step(void **state
     assert_true(fabs(coarse / fine - 1) < 0.01);
 }
 
-// Long steps, any stiffness, a head that jumps and turns: finite, of its lengths, and at rest in
-// the end where the style is.
+// Long steps, any stiffness, a head that jumps and turns: positions are finite, lengths are kept,
+// and in the end the hair rests in its style.
 static void stiffest(SectionParams *params)
 {
     params->chain_bend = 1e6f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Dynamic follow-the-leader on the GPU against its double-precision form, against the exact motion,
-// and where its rule has no direction.
+// Dynamic follow-the-leader on the GPU against its double-precision form and the exact motion, and
+// where its rule gives no direction.
 #include "support/reference_dftl.h"
 #include "support/reference_motion.h"
 
@@ -16,7 +16,8 @@ static void undamped(SectionParams *params)
     params->ftl_damping = 0;
 }
 
-// Three times what was measured, the larger of both variants and of a CPU with and without AVX.
+// Bounds are three times the measured values, the larger of both variants and of a CPU with and
+// without AVX.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -38,8 +39,9 @@ static void published(SectionParams *params)
     params->ftl_damping = 0.9f;
 }
 
-// The reference implementation's error over the same scenarios: 0.11, 0.092, 0.078 (two digits,
-// over all frames). With the default the drawn strand is calmer, and finer steps help more.
+// The error of the reference implementation in the same scenarios: 0.11, 0.092, 0.078 (two digits,
+// over all frames). With default parameters the drawn strand is calmer, and shorter steps help
+// more.
 static void its_error_is_that_of_the_reference_implementation(void **state)
 {
     (void)state;
@@ -49,8 +51,8 @@ static void its_error_is_that_of_the_reference_implementation(void **state)
     assert_true(reference_mean_error("dftl", "", 4, NULL) < 0.074);
 }
 
-// 1/64 s and 2048 m/s^2 take the follower from 0.25 m above its leader to exactly on it; all
-// numbers are powers of two. It stays where the style has it.
+// With 1/64 s and 2048 m/s^2, the follower moves from 0.25 m above its leader exactly onto it; all
+// numbers are powers of two. It then takes the style's direction.
 static void a_follower_on_its_leader_goes_the_styles_way(void **state)
 {
     (void)state;
@@ -66,8 +68,8 @@ static void a_follower_on_its_leader_goes_the_styles_way(void **state)
     fixture_destroy(&fixture);
 }
 
-// Lengths follow from the last operation on each particle; positions up to 0.3 m round by 2^-26,
-// which is 4e-6 of a segment of 4 mm.
+// The last operation on each particle enforces lengths. Positions of up to 0.3 m are rounded by
+// 2^-26, which is 4e-6 of a segment of 4 mm.
 static void lengths_are_exact_even_after_a_violent_move(void **state)
 {
     (void)state;

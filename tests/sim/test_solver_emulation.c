@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Emulation on the GPU against its double-precision form and the reference traces. What it shares
-// with others that converge is in test_solvers_convergent.c.
+// Emulation on the GPU against its double-precision form and reference traces. Properties shared by
+// all convergent solvers are in test_solvers_convergent.c.
 #include "support/reference_hybrid.h"
 #include "support/reference_traces.h"
 
@@ -14,8 +14,8 @@
 
 static const TwinPair PAIR = {"emulation", "", reference_emulation_step, false};
 
-// Three times what was measured, the larger of a CPU with and without AVX. The pulls of long
-// strands amplify what rounding adds.
+// Bounds are three times the measured values, the larger of a CPU with and without AVX. The pulls
+// of long strands amplify rounding.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -38,7 +38,7 @@ static void strands_through_memory_equal_the_twin_too(void **state)
     twin_require(&PAIR, cases, sizeof cases / sizeof *cases);
 }
 
-// The published rule amplifies what rounding adds from the first steps on.
+// The published rule amplifies rounding from the first steps on.
 static void thesis_equals_its_double_precision_twin(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hybrid on the GPU against its double-precision form. What it shares with others that converge is
-// in test_solvers_convergent.c.
+// Hybrid on the GPU against its double-precision form. Properties shared by all convergent solvers
+// are in test_solvers_convergent.c.
 #include "support/reference_hybrid.h"
 
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 
 static const TwinPair PAIR = {"hybrid", "", reference_hybrid_step, false};
 
-// Three times what was measured, the larger of a CPU with and without AVX.
+// Bounds are three times the measured values, the larger of a CPU with and without AVX.
 static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Position-based rope on the GPU against its double-precision form and against the exact motion.
+// Position-based rope on the GPU against its double-precision form and the exact motion.
 #include "support/reference_motion.h"
 #include "support/reference_rope.h"
 
@@ -42,7 +42,7 @@ static void compliant(SectionParams *params)
 static const TwinPair BULLET = {"rope", "bullet", reference_rope_bullet_step, true};
 static const TwinPair XPBD = {"rope", "xpbd", reference_rope_xpbd_step, true};
 
-// Three times what was measured, the larger of a CPU with and without AVX.
+// Bounds are three times the measured values, the larger of a CPU with and without AVX.
 static void bullets_rope_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -61,10 +61,10 @@ static void bullets_rope_equals_its_double_precision_twin(void **state)
     twin_require(&BULLET, cases, sizeof cases / sizeof *cases);
 }
 
-// Measured: at most 3e-7 of the length with drag 4/s after 600 steps of 10 small ones, 2e-5 where
-// moves were differences of positions. With less drag the motion is chaotic, so that only its first
-// second is compared: 1.4e-6, and of 12,000 small steps 1e-4 (0.07 with such differences; 1e-5 with
-// drag 4/s).
+// Measured with drag 4/s after 600 steps of 10 sub-steps: at most 3e-7 of the length, or 2e-5 if
+// displacements were differences of positions. With less drag the motion is chaotic, so that only
+// its first second is compared: 1.4e-6, and 1e-4 with 12,000 sub-steps (0.07 with such differences;
+// 1e-5 with drag 4/s).
 static void xpbd_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -87,8 +87,8 @@ static void xpbd_equals_its_double_precision_twin(void **state)
     twin_require(&XPBD, cases, sizeof cases / sizeof *cases);
 }
 
-// The reference implementation of position-based dynamics errs by 0.65 and 0.18 with 2 and 10
-// sweeps; Bullet's links, which overshoot where they are stretched far, by less.
+// The reference implementation of position-based dynamics has errors of 0.65 and 0.18 with 2 and 10
+// sweeps; Bullet's links, which overcorrect large stretch, have less.
 static void bullets_rope_errs_no_more_than_the_reference_implementation(void **state)
 {
     (void)state;
@@ -97,7 +97,7 @@ static void bullets_rope_errs_no_more_than_the_reference_implementation(void **s
     assert_true(reference_mean_error("rope", "bullet", 1, NULL) < 0.1);
 }
 
-// 0.040, 0.020 and 0.012 in the reference implementation's table of 10 small steps.
+// The reference implementation's errors with 10 sub-steps: 0.040, 0.020 and 0.012.
 static void xpbd_errs_as_the_reference_implementation(void **state)
 {
     (void)state;
@@ -106,8 +106,9 @@ static void xpbd_errs_as_the_reference_implementation(void **state)
     assert_true(fabs(reference_mean_error("rope", "xpbd", 4, stretched) - 0.012) < 0.0005);
 }
 
-// A hanging rope of two links with compliance alpha: the upper carries 2 g, the lower 1 g, so they
-// are longer by 2 alpha g and alpha g. A sweep sees each particle h^2 g lower than it rests.
+// A hanging rope of two links with compliance alpha: the upper link carries 2 g and the lower one 1
+// g, so that they are longer by 2 alpha g and alpha g. During a sweep, each particle is h^2 g below
+// its rest position.
 static void compliance_is_stretch_over_acceleration(void **state)
 {
     (void)state;
@@ -138,7 +139,7 @@ static void bullets_rope_refuses_compliance(void **state)
     assert_non_null(strstr(error.text, "--variant xpbd"));
 }
 
-// Gravity of 1e6 m/s^2, a head that jumps by 1e8 m, links whose ends meet.
+// Gravity of 1e6 m/s^2, a head that jumps by 1e8 m, and links whose ends coincide.
 static void no_violence_gives_a_nan(void **state)
 {
     (void)state;

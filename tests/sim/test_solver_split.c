@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The split solver on the GPU against its double-precision form, the reference traces, and
-// invariants for any hair.
+// The split solver on the GPU against its double-precision form, reference traces, and invariants
+// for any hair.
 #include "sim/step.h"
 #include "support/reference_split.h"
 #include "support/reference_traces.h"
@@ -23,27 +23,27 @@ static double total_length(const ReferenceStrand *strand)
     return sum;
 }
 
-// A step adds rounding of about 2^-24 a particle, which a strand of n sums up to sqrt(n) 2^-24 of
-// its length; drag c forgets it within 1/(c dt) steps, which add up as a random walk. A safety
-// factor of 8 covers that errors at kinks grow before they are forgotten.
+// Each step adds rounding of about 2^-24 per particle, which adds up to sqrt(n) 2^-24 of the length
+// over a strand of n; drag c reduces it within 1/(c dt) steps, over which it grows like a random
+// walk. The factor 8 allows for errors that grow at kinks before drag reduces them.
 static double step_tolerance(int n, double c, double dt)
 {
     return 2 * sqrt((double)n / (c * dt)) * 0x1p-24;
 }
 
-enum { LONG_STEPS = 60 }; // below so many a second every step is compared
+enum { LONG_STEPS = 60 }; // every step is compared if there are fewer per second
 
-// After so many seconds, the RMS error over the length that was measured against the twin, the
-// largest of CPUs with vectors of 256 and 128 bits, AVX without FMA, and SSE2; three
-// times that is allowed, and where operations are less exact that times fixture_rounding(), or as
-// much as step_tolerance says.
+// The RMS error after this number of seconds, relative to the length, as measured against the
+// double-precision form: the largest of CPUs with vectors of 256 and 128 bits, AVX without FMA, and
+// SSE2. Three times that is allowed, multiplied by fixture_rounding() where operations are less
+// exact, or step_tolerance if that is more.
 typedef struct SplitCase {
     int n;
     const char *variant;
     double style, rate, seconds, measured;
 } SplitCase;
 
-// The head at a time: it moves by 4 cm at 2 Hz and turns by 0.2 rad about the z axis.
+// The head's pose at a time: it moves by 4 cm at 2 Hz and rotates by 0.2 rad about the z axis.
 static void move_head(HeadPose *head, double time)
 {
     double turn = 0.1 * sin(6.283185307 * 2 * time); // half the angle
@@ -52,7 +52,7 @@ static void move_head(HeadPose *head, double time)
     head->rotation[3] = (float)cos(turn);
 }
 
-// What the head has turned by, a vector about the z axis.
+// Rotates v by the head's rotation about the z axis.
 static void turn_with(const HeadPose *head, const Vec v, Vec turned)
 {
     double s = (double)head->rotation[2], w = (double)head->rotation[3];
@@ -61,7 +61,7 @@ static void turn_with(const HeadPose *head, const Vec v, Vec turned)
     vec_copy(r, turned);
 }
 
-// The farthest that a drawn strand is from its twin, over the length.
+// The largest distance of a drawn strand from its double-precision form, relative to the length.
 static double find_distance(HairFixture *fixture, const ReferenceStrand *twins, int count,
                             const Vec *start, double style)
 {
@@ -135,8 +135,8 @@ static void run_cases(const SplitCase *cases, size_t count)
     for (size_t i = 0; i < count; ++i) run_against_reference(&cases[i]);
 }
 
-// At long steps the tip swings by most of a radian in one: corrections of its arc are large, and
-// its string is taut or not within one step.
+// With long steps the tip swings by up to a radian per step: corrections of its arc are large, and
+// its string may become taut or loose within a step.
 static void ball_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -177,8 +177,8 @@ static void thesis_equals_the_reference_traces(void **state)
     assert_int_equal(traces_compare("split", "split", "thesis", traces_imitate_explicit_drag), 4);
 }
 
-// Positions are float32: each coordinate is off by at most 2^-24 of its size, the difference of two
-// by twice that.
+// Positions are float32: each coordinate errs by at most 2^-24 of its size, and the difference of
+// two by twice that.
 static void segment_lengths_do_not_drift_in_10000_steps(void **state)
 {
     (void)state;
@@ -203,7 +203,7 @@ static void segment_lengths_do_not_drift_in_10000_steps(void **state)
             for (int k = 0; k < 3; ++k)
                 r[k] = q[j][k] - q[j - 1][k], size = fmax(size, fabs(q[j][k]));
             double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-            // 4e-7: unit directions and the lengths themselves in float32
+            // 4e-7: unit directions and the lengths themselves are float32
             worst = fmax(worst, fabs(length / rest.length[j] - 1) /
                                     (4e-7 + 2 * 1.8 * 0x1p-24 * size / rest.length[j]));
         }
@@ -212,9 +212,9 @@ static void segment_lengths_do_not_drift_in_10000_steps(void **state)
     fixture_destroy(&fixture);
 }
 
-// One step of tips that fly sideways, so fast that the string turns by 0 to 85 degrees in it: up to
-// where its arc is no longer corrected, and beyond. A tip whose string turns just so far may be
-// rounded to either side. Measured as above.
+// One step with tips that move sideways so fast that the string turns by 0 to 85 degrees: up to the
+// angle where its arc is no longer corrected, and beyond. A tip exactly at that angle may be
+// rounded to either side. Bounds as above.
 static void strings_that_turn_far_in_a_step_equal_the_twin(void **state)
 {
     (void)state;
@@ -262,19 +262,20 @@ static void strings_that_turn_far_in_a_step_equal_the_twin(void **state)
     fixture_destroy(&fixture);
 }
 
-// Of the length of a direction that is divided by its length, as it is drawn: a dot product of
-// three roundings, which its root halves; one each for the product with the inverse root, for the
-// product and the sum of the position, and for the length itself. The inverse root is off by half a
-// unit; by 2 units elsewhere (GLSL 4.30, 4.7.1), or as many as are imitated.
+// Tolerance of the length of a normalised direction as drawn: a dot product of three roundings,
+// halved by the root; one rounding each for the product with the inverse root, for the product and
+// the sum of the position, and for the length. The inverse root errs by half a unit, or by 2 units
+// on other drivers (GLSL 4.30, 4.7.1), or by as many as are imitated.
 static double length_tolerance(void)
 {
     double units = fixture_rounding() > 1 ? fmax(2, fixture_gpu()->ulps) : 0.5;
     return (1.5 + 4) * 0x1p-24 + units * 0x1p-23;
 }
 
-// Directions nearly opposite to the style's, 10^-4 to 6 degrees off: what lies a quarter of the way
-// between them, or three quarters, is a direction, too, though rounding is much of their sum. Of
-// length 1 but for the rounding of both and of positions; 45 or 135 degrees from the style.
+// Directions almost opposite to the style's, within 10^-4 to 6 degrees. A quarter or three quarters
+// of the way between the two is still a valid direction, although their sum consists mostly of
+// rounding: of length 1 within the rounding of both and of positions, and 45 or 135 degrees from
+// the style.
 static void check_opposites(double style)
 {
     enum { COUNT = 256 };
@@ -329,9 +330,9 @@ static void hanging_hair_stays_at_rest(void **state)
     fixture_destroy(&fixture);
 }
 
-// The tip is a pendulum: against the exact (elliptic) swing it is of second order, 4e-4 of the
-// length at 60 Hz with c = 4. Here its period from 90 degrees, 1.183921 s for 0.25 m, which the
-// strand of 2 shows as the time of the fourth passage through the bottom.
+// The tip is a pendulum; against the exact (elliptic) motion it has second order, 4e-4 of the
+// length at 60 Hz with c = 4. This tests its period from 90 degrees, 1.183921 s for 0.25 m, by the
+// time of the fourth passage through the lowest point of a strand of 2.
 static void the_tip_swings_like_a_pendulum(void **state)
 {
     (void)state;
@@ -358,8 +359,8 @@ static void the_tip_swings_like_a_pendulum(void **state)
     fixture_destroy(&fixture);
 }
 
-// phi'' = g/L cos(phi) - c phi', phi downwards from the horizontal; over dt seconds by Runge and
-// Kutta's fourth order, in steps that are too short to matter (1e-4 s: 1e-12).
+// Integrates phi'' = g/L cos(phi) - c phi', with phi downwards from the horizontal, over dt seconds
+// by the fourth-order Runge-Kutta method in tiny steps (1e-4 s: 1e-12).
 static void swing(double *angle, double *rate, double drag, double dt)
 {
     const double ratio = 9.81 / 0.25;
@@ -376,8 +377,8 @@ static void swing(double *angle, double *rate, double drag, double dt)
     }
 }
 
-// Released horizontally with a drag of 4/s, at 60 Hz for 2 s: 4e-4 of the length (RMS; by chords
-// 9e-4).
+// Released horizontally with drag 4/s, at 60 Hz for 2 s: 4e-4 of the length (RMS; with chords
+// instead of arcs 9e-4).
 static void the_tip_is_a_damped_pendulum(void **state)
 {
     (void)state;
@@ -416,8 +417,8 @@ static void strands_do_not_depend_on_each_other(void **state)
     fixture_destroy(&one);
 }
 
-// 30 degrees about z for everything: strand, gravity, wind. Float32 rounds both runs differently,
-// by the tolerance of a run twice.
+// Strand, gravity and wind are rotated by 30 degrees about z. Float32 rounds the two runs
+// differently, each by the tolerance of a run.
 static void turning_the_whole_scene_turns_the_result(void **state)
 {
     (void)state;
@@ -491,8 +492,7 @@ static void a_flung_tip_is_cut_and_counted(void **state)
     fixture_destroy(&fixture);
 }
 
-// Loops beyond 65,535 iterations end silently on CPU drivers: what would exceed them must not be
-// stepped at all.
+// CPU drivers end loops silently after 65,535 iterations: longer strands must be refused.
 static void a_strand_beyond_the_drivers_loops_is_refused(void **state)
 {
     (void)state;

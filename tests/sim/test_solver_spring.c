@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Mass-spring strands on the GPU against their double-precision form, the exact motion, and the
-// laws of springs.
+// Mass-spring strands on the GPU against their double-precision form, the exact motion, and laws of
+// springs.
 #include "support/reference_motion.h"
 #include "support/reference_spring.h"
 
@@ -30,8 +30,8 @@ static void stretched(SectionParams *params)
 static const TwinPair IMPLICIT = {"spring", "implicit", reference_spring_implicit_step, true};
 static const TwinPair EXPLICIT = {"spring", "explicit", reference_spring_explicit_step, true};
 
-// Three times what was measured (twin.h). At 30 Hz, without angular springs, strands of 16 and more
-// tremble by some 1e-3: chaos, left out.
+// Bounds are three times the measured values (twin.h). At 30 Hz without angular springs, strands of
+// 16 and more tremble by about 1e-3: they are chaotic and left out.
 static void implicit_equals_its_double_precision_twin(void **state)
 {
     (void)state;
@@ -45,8 +45,8 @@ static void implicit_equals_its_double_precision_twin(void **state)
     twin_require(&IMPLICIT, cases, sizeof cases / sizeof *cases);
 }
 
-// Measured: 3e-7 to 1e-6 with drag 4/s for n = 2 and 3. Longer strands ring undamped along their
-// links and are chaotic within seconds: n = 16 has 1e-5 to 3e-4 after 10 s, so that it is compared
+// Measured: 3e-7 to 1e-6 with drag 4/s for n = 2 and 3. The links of longer strands oscillate
+// undamped, which is chaotic within seconds: n = 16 has 1e-5 to 3e-4 after 10 s and is compared
 // over 1 s.
 static void explicit_equals_its_double_precision_twin(void **state)
 {
@@ -59,7 +59,8 @@ static void explicit_equals_its_double_precision_twin(void **state)
     twin_require(&EXPLICIT, cases, sizeof cases / sizeof *cases);
 }
 
-// Explicit springs are second order and leave their own stretch as error, which goes with 1/K.
+// Explicit springs have second order, and their stretch remains as an error, which is proportional
+// to 1/K.
 static void stiff_explicit_springs_follow_the_exact_motion(void **state)
 {
     (void)state;
@@ -76,10 +77,10 @@ static void implicit_springs_come_nearer_with_smaller_steps(void **state)
     assert_true(fine < 0.6 * coarse);
 }
 
-// Where a horizontal link of 0.2 m in its style's direction rests: its angle and its length m.
-// Implicit: the angular force B theta is at the stretched link's end, B theta = g cos(theta), and
-// the coil, K = 1e4, carries g sin(theta) with half its force. Explicit: both forces come from the
-// potential (spring.comp) with e = l/4.
+// The angle and the length in m at which a horizontal link of 0.2 m in its style's direction rests.
+// Implicit: the angular force B theta acts at the stretched link's end, B theta = g cos(theta), and
+// the coil, K = 1e4, carries g sin(theta) with half its force. Explicit: both forces follow from
+// the potential (spring.comp) with e = l/4.
 static double rest_of_link(bool explicit, double *length)
 {
     const double g = (double)9.81f, B = 10, K = 1e4, l = 0.2, e = explicit ? l / 4 : 0;
@@ -115,7 +116,7 @@ static void a_single_link_rests_where_springs_balance_gravity(void **state)
     }
 }
 
-// Gravity and motion alone, as far as the strand is seen: springs may hold energy for a moment.
+// Potential energy of gravity and kinetic energy only: springs may hold energy for a moment.
 static double visible_energy(const TwinStrand *strand)
 {
     double energy = 0;
@@ -124,8 +125,9 @@ static double visible_energy(const TwinStrand *strand)
     return energy / (strand->n - 1);
 }
 
-// The implicit rule (the twin, which the shader equals): 20 s after release no more than the
-// start's energy and 1 % of what hanging straight down would set free, at any length and rate.
+// The implicit rule (in the double-precision form, which equals the shader): 20 s after release,
+// the energy is at most that of the start plus 1 % of what the strand would lose by hanging
+// straight down, for any vertex count and step rate.
 static void implicit_springs_gain_no_energy(void **state)
 {
     (void)state;
@@ -150,8 +152,8 @@ static void implicit_springs_gain_no_energy(void **state)
             }
 }
 
-// Gravity of 1e6 m/s^2; a head that jumps by 1e8 m; springs stiffer than float32 can tell from
-// rigid.
+// Gravity of 1e6 m/s^2; a head that jumps by 1e8 m; springs so stiff that float32 can't distinguish
+// them from rigid links.
 static void no_violence_gives_a_nan(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TressFX's constraints on the GPU against their double-precision form, and the stiffness
-// of `steady`, which depends on its parameter alone.
+// TressFX's constraints on the GPU against their double-precision form; and the stiffness of
+// `steady`, which depends on no other parameter.
 #include "support/reference_tressfx.h"
 
 #include <math.h>
@@ -31,23 +31,22 @@ static void local_only(SectionParams *params)
     params->tressfx_global_constraint_stiffness = 0;
 }
 
-// The range ends exactly at a vertex, which it leaves out.
+// The range ends exactly at a vertex, which is not in the range.
 static void range_of_four(SectionParams *params)
 {
     params->tressfx_global_constraint_stiffness = 0.2f;
     params->tressfx_global_constraints_range = 0.25f;
 }
 
-// The head moves vertices further than that in most steps, and the wind, which is kept from it too,
-// never.
+// The head moves vertices beyond the threshold in most steps; the wind alone never does.
 static void clamped(SectionParams *params)
 {
     params->tressfx_clamp_position_delta = 1;
 }
 
-// Three times what was measured (twin.h). A strand whips at 240 Hz, for n = 64, and with little
-// shape. The free end of a long one whose first third is held whips more (1.5e-3 at 60 Hz): n = 64
-// has local shape alone.
+// Bounds are three times the measured values (twin.h). A strand whips at 240 Hz, with n = 64, and
+// with little shape. The free end of a long strand whose first third is held whips more (1.5e-3 at
+// 60 Hz), so that n = 64 has local shape only.
 static const TwinPair STEADY = {"tressfx", "steady", reference_tressfx_steady, false};
 static const TwinPair TRESSFX4 = {"tressfx", "tressfx4", reference_tressfx_4, false};
 
@@ -83,7 +82,7 @@ static void tressfx4_equals_its_double_precision_twin(void **state)
     twin_require(&TRESSFX4, cases, sizeof cases / sizeof *cases);
 }
 
-// A vertex between a short segment and one more than twice as long gives way by less.
+// A vertex between a short segment and one more than twice as long moves less.
 static void uneven_strands_equal_their_twins_too(void **state)
 {
     (void)state;
@@ -96,8 +95,8 @@ static void uneven_strands_equal_their_twins_too(void **state)
     twin_require_uneven(&TRESSFX4, cases, 2);
 }
 
-// How far below its root the tip of a straight strand hangs after 3 s, over its length, when it is
-// held horizontally.
+// A straight strand is held horizontally. Returns how far its tip is below its root after 3 s,
+// relative to its length.
 static double sag(const char *variant, int n, double per_second, int passes, float global)
 {
     Vec start[32] = {{0}}, q[32];
@@ -135,11 +134,12 @@ static void only_the_stiffness_sets_how_stiff_steady_is(void **state)
     assert_true(most - least < 0.015 && most < 0.4);
     spread_of_sags("steady", 16, &least, &most);
     assert_true(most - least < 0.04);
-    spread_of_sags("tressfx4", 8, &least, &most); // the probe can tell
+    spread_of_sags("tressfx4", 8, &least, &most); // shows that the test can fail
     assert_true(most - least > 0.2);
 }
 
-// Hair that hangs from its style (--rest hanging) keeps more of it with the default global shape.
+// Hair that hangs in its style (--rest hanging) keeps more of the style with the default global
+// shape.
 static void the_default_global_shape_holds_the_groom(void **state)
 {
     (void)state;
@@ -157,7 +157,7 @@ static void the_default_global_shape_holds_the_groom(void **state)
     }
 }
 
-// --- Sections with parameters of their own: stepped in turns they move as each does alone.
+// --- Sections with different parameters: simulated together, each moves as it does alone.
 
 static const struct {
     const char *variant;
@@ -197,8 +197,8 @@ static void sections_keep_their_own_parameters(void **state)
     for (int i = 0; i < SECTION_COUNT; ++i) fixture_destroy(&together[i]);
 }
 
-// Head motion in a frame, then rest: beyond the threshold, 1.4 cm, the strand arrives with the
-// root, below it is left behind.
+// The head moves for one frame, then rests: beyond the threshold of 1.4 cm, the strand moves with
+// the root; below, it is left behind.
 static void a_jerked_root_takes_the_strand_along(void **state)
 {
     (void)state;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Invariants of every solver in the table. A solver's own tests
-// are in test_solver_<name>.c, energy in test_solvers_energy.c, convergence in
-// test_solvers_convergent.c.
+// Invariants of every solver. Tests of single solvers are in test_solver_<name>.c, energy in
+// test_solvers_energy.c, convergence in test_solvers_convergent.c.
 #include "strands/strands_read.h"
 #include "support/every_solver.h"
 
@@ -62,11 +61,11 @@ static void hanging_hair_stays_at_rest(void **state)
     every_solver_run(check_rest, REST);
 }
 
-// --- Curls that have come to rest.
+// --- Curls at rest.
 
-// Who trembles from frame to frame by more than 1e-4 of the length at 60 Hz, from how many
-// particles on and by how much at most: twice the most that was measured over the curls in assets/
-// with drag 1 and 5/s (docs/solvers.md).
+// Solvers that tremble from frame to frame by more than 1e-4 of the length at 60 Hz, from which
+// particle count on, and by how much at most: twice the largest value measured with the curls in
+// assets/ with drag 1 and 5/s (docs/solvers.md).
 static const struct {
     const char *algo, *variant;
     int from;
@@ -91,7 +90,7 @@ static double allowed_tremor(const SolverType *type, const char *variant, int n)
 
 enum { CURLS = 4, CURL_MOST = 48 };
 
-// Four of the curls in assets/, by every vertex (48) or every third (16).
+// Four of the curls in assets/, with all their vertices (48) or every third (16).
 static void read_curls(Vec *q, int n)
 {
     const StrandsReadOptions options = {.unit = 1};
@@ -109,7 +108,7 @@ static void read_curls(Vec *q, int n)
     strands_destroy(&strands);
 }
 
-// The farthest that a particle goes in a frame of the second that follows, in metres.
+// The largest distance a particle moves per frame during the following second, m.
 static double find_tremor(HairFixture *fixture)
 {
     const HairBatch *batch = &fixture->hair.batches[0];
@@ -155,8 +154,8 @@ static void curls_come_to_rest(void **state)
     every_solver_run(check_tremor, 0);
 }
 
-// --- Symmetries. Rounding differs between the two runs; half a second with drag keeps what grows
-// from it below 1e-4 of the length, in solvers that whip too.
+// --- Symmetries. The two runs round differently. Half a second with drag keeps the difference
+// below 1e-4 of the length, also in solvers that whip.
 
 enum { SYMMETRY_STEPS = 30 };
 
@@ -192,7 +191,8 @@ static void turning_the_whole_scene_turns_the_result(void **state)
     every_solver_run(check_turn, TURN);
 }
 
-// Parameters that are lengths, or accelerations of them, in a scene that is `scale` times as large.
+// Multiplies parameters that are lengths, or accelerations of them, for a scene `scale` times as
+// large.
 static void scale_params(SectionParams *params, float scale)
 {
     params->tressfx_vsp_accel_threshold *= scale;
@@ -231,11 +231,12 @@ static void the_unit_of_length_does_not_matter(void **state)
     every_solver_run(check_unit, UNIT);
 }
 
-// --- Strands among others.
+// --- Strands among other strands.
 
 enum { CROWD = 37, CROWD_N = 12 };
 
-// Fills a crowd and steps it; strand `at` is always the same curl, the others come from `other`.
+// Fills a crowd and steps it; strand `at` is always the same curl, and the others depend on
+// `other`.
 static void step_crowd(const SolverType *type, const char *variant, int at, int other, Vec *q)
 {
     static Vec start[CROWD * CROWD_N];
@@ -282,7 +283,7 @@ static void the_order_of_strands_does_not_matter(void **state)
     every_solver_run(check_order, ORDER);
 }
 
-// --- Violence.
+// --- Extreme input.
 
 static void check_violence(const SolverType *type, const char *variant)
 {

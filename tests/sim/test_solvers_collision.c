@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Invariants of hair and colliders, for every solver in the table. test_collision.c tests single
-// particles.
+// Invariants of hair with colliders, for every solver. Single particles are tested in
+// test_collision.c.
 #include "support/every_solver.h"
 #include "support/shapes.h"
 
@@ -16,7 +16,7 @@ static const double MARGIN = 0.001; // the default of collision_margin
 
 // --- Rest.
 
-// Strands of 0.24 m, rooted on a sphere of 0.1 m near its top, that begin horizontally.
+// Strands of 0.24 m with roots near the top of a sphere of 0.1 m; they start horizontally.
 enum { DRAPED = 3, DRAPED_N = 16 };
 static const double DRAPED_LINK = 0.016, SPHERE = 0.1;
 static DistanceField sphere_field;
@@ -33,7 +33,7 @@ static void make_draped(Vec *q)
         }
 }
 
-// Who is not still by 1e-5 of its length a step, and why.
+// Solvers that move by more than 1e-5 of the length per step at rest, and why.
 static const struct {
     const char *algo, *variant; // "": all
     double most;
@@ -72,8 +72,8 @@ static double largest_move(const Vec *a, const Vec *b)
     return largest;
 }
 
-// The first particle leaves the root's depth, the margin, after twice that length, which is less
-// than its link: so all must keep the margin.
+// The allowed depth, the root's depth below the margin, ends after twice that length along the
+// strand, which is less than one link: all particles must keep the margin.
 static void check_rest(const SolverType *type, const char *variant, float style)
 {
     const double length = DRAPED_LINK * (DRAPED_N - 1);
@@ -121,8 +121,8 @@ static void hair_comes_to_rest_on_a_sphere(void **state)
     every_solver_run(check_styled_rest, 0);
 }
 
-// The same sphere as a mesh, by its field. Where facets (3e-5 m) and trilinear interpolation
-// between 64 samples (spacing h = 3.2 mm, sagging by h^2/(4 R) on a sphere) allow 1e-4 m.
+// The same sphere as a mesh by its distance field. Facets (3e-5 m) and trilinear interpolation
+// between 64 samples (with spacing h = 3.2 mm, an error of h^2/(4 R) on a sphere) allow 1e-4 m.
 static void check_field(const SolverType *type, const char *variant)
 {
     Vec start[DRAPED * DRAPED_N], q[DRAPED_N];
@@ -173,9 +173,9 @@ static double length_error(const Vec *q, const Vec *start)
     return worst;
 }
 
-// A head that turns back and forth by 60 degrees in 0.4 s, with a capsule that sweeps through the
-// hair. Positions up to 0.35 m round by 3e-8 m: 1e-5 of a link is 1.6e-7. tressfx4 stretches
-// anyway.
+// A head that turns back and forth by 60 degrees in 0.4 s, and a capsule that sweeps through the
+// hair. Positions of up to 0.35 m are rounded by 3e-8 m; 1e-5 of a link is 1.6e-7. tressfx4
+// stretches anyway.
 static void check_sweep(const SolverType *type, const char *variant)
 {
     Vec start[DRAPED * DRAPED_N], q[DRAPED_N];
@@ -211,18 +211,18 @@ static void a_turning_head_pushes_hair_and_keeps_its_lengths(void **state)
 
 enum { TURN_STEPS = 20 };
 
-// How far a turned scene may be off. A step adds rounding of about 2^-24 a particle, which a strand
-// of n sums up to sqrt(n) 2^-24 of its length; at worst that of all steps adds up, in both runs.
-// Measured: 2.8e-6, and 5.4e-6 where maths is 4 or 8 units off, of 9.5e-6.
-// Explicit springs shake: a particle that touches in the one scene and just not in the other goes
-// on by more than rounding. Measured: 5.8e-4, whether maths is 0, 1 or 2 units off.
+// How far a rotated scene may differ. Each step adds rounding of about 2^-24 per particle, sqrt(n)
+// 2^-24 of the length for a strand of n; in the worst case, the errors of all steps add up in both
+// runs. Measured: 2.8e-6, and 5.4e-6 if arithmetic errs by 4 or 8 units; 9.5e-6 is allowed.
+// Explicit springs oscillate: a particle that touches a collider in one scene and narrowly misses
+// it in the other moves differently. Measured: 5.8e-4, with arithmetic errors of 0, 1 or 2 units.
 static double turn_tolerance(const char *algo, const char *variant)
 {
     if (strcmp(algo, "spring") == 0 && strcmp(variant, "explicit") == 0) return 1e-3;
     return 2 * TURN_STEPS * sqrt(DRAPED_N) * 0x1p-24 * fixture_rounding();
 }
 
-// The scene turned by 30 degrees about z: shapes as text with the same numbers turned.
+// The scene is rotated by 30 degrees about z, including the numbers of colliders.
 static void check_turn(const SolverType *type, const char *variant)
 {
     const double c = cos(0.5235987756), s = sin(0.5235987756);
@@ -263,9 +263,10 @@ static void turning_the_whole_scene_turns_the_result(void **state)
     every_solver_run(check_turn, 0);
 }
 
-// --- Roots inside, and no colliders.
+// --- Roots inside colliders, and no colliders.
 
-// Roots 2 cm inside: the strand leaves within 4 cm of its length, nothing is flung.
+// Roots 2 cm inside: the strand leaves the collider within 4 cm of its length, and no particle is
+// thrown.
 static void check_root_inside(const SolverType *type, const char *variant)
 {
     enum { N = 16 };
@@ -282,8 +283,8 @@ static void check_root_inside(const SolverType *type, const char *variant)
         for (int j = 4; j < N; ++j)
             every_solver_require(vec_norm(q[j]) > SPHERE, type, variant, "particle %g is inside",
                                  (double)j);
-        // 1/60 s at 2 m/s, the speed of a fall by the strand's length. The published emulation
-        // swings up by itself.
+        // 1/60 s at 2 m/s, the speed after falling by the strand's length. The published emulation
+        // swings upwards by itself.
         double move = largest_move((const Vec *)q, (const Vec *)before);
         bool wild = strcmp(type->name, "emulation") == 0 && strcmp(variant, "thesis") == 0;
         every_solver_require(wild || move < 2.0 / 60 + 0.003, type, variant,
@@ -299,7 +300,7 @@ static void roots_inside_stay_and_strands_leave(void **state)
     every_solver_run(check_root_inside, 0);
 }
 
-// Colliders out of reach, and `collide` off, give what no colliders give, bit for bit.
+// Colliders out of reach, and collide off, give the same bits as no colliders.
 static void check_none(const SolverType *type, const char *variant)
 {
     Vec start[DRAPED * DRAPED_N], q[3][DRAPED_N];

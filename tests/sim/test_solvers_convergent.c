@@ -10,9 +10,10 @@
 
 #include <cmocka.h>
 
-// Bounds on errors over the strand's length. Of a released strand at 120 Hz, and how much smaller
-// it must be at 480 Hz: a second-order method has 16, less as long as the guard of energy acts. And
-// of the geometric mean over all scenarios in 1, 2 and 4 steps a frame of 1/60 s.
+// Bounds of errors relative to the strand's length. First, of a released strand at 120 Hz, and the
+// factor by which the error must be smaller at 480 Hz: 16 for a second-order method, less while the
+// energy guard is active. Second, of the geometric mean over all scenarios with 1, 2 and 4 steps
+// per frame of 1/60 s.
 //
 // Measured, 60, 120 and 480 Hz: 0.0048, 0.0017 and 0.00015 (hybrid), 0.00014 (emulation), as in
 // their double-precision forms. Means: chain 0.019, 0.0096 and 0.0048 as the reference
@@ -58,7 +59,7 @@ static void mean_errors_fall_with_the_step(void **state)
         }
 }
 
-// Straight down without drag for 10 s, within 1e-5 of the length.
+// Hangs straight down without drag for 10 s, within 1e-5 of the length.
 static void hanging_hair_stays_at_rest(void **state)
 {
     (void)state;
@@ -93,8 +94,8 @@ static double length_error_after_jump(const char *algo, int n)
     return twin_length_error(&rest, (const Vec *)q);
 }
 
-// A jump of the head by 1000 lengths, and back. It breaks chain's solves: tractrices take over for
-// that step.
+// The head jumps by 1000 lengths and back. Chain's solve fails, and tractrices replace it in that
+// step.
 static void lengths_survive_a_jump(void **state)
 {
     (void)state;

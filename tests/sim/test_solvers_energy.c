@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Energy and lengths of every solver in a long run without anything that moves the hair but
-// gravity.
+// Energy and lengths of every solver in long runs with gravity as the only force.
 #include "support/every_solver.h"
 
 #include <math.h>
@@ -11,7 +10,7 @@
 
 #include <cmocka.h>
 
-static const double ALLOWED_RISE = 0.01; // of what can be lost by falling
+static const double ALLOWED_RISE = 0.01; // relative to what falling can release
 
 enum { LONG_MOST = 64, LONG_KINDS = 2 };
 static const int LONG_COUNTS[] = {4, 16, 64};
@@ -21,11 +20,11 @@ typedef struct LongRun {
     HairFixture fixture;
     Vec start[LONG_SIZES][LONG_KINDS][LONG_MOST];
     Vec before[LONG_SIZES][LONG_KINDS][LONG_MOST];
-    Vec v[LONG_SIZES][LONG_KINDS]
-         [LONG_MOST]; // the solver's own velocities; else displacements / dt
+    // the solver's own velocities, or displacements / dt
+    Vec v[LONG_SIZES][LONG_KINDS][LONG_MOST];
 } LongRun;
 
-// Of each vertex count a straight strand held horizontally and a curl.
+// For each vertex count, a straight strand held horizontally and a curl.
 static void long_run_create(LongRun *run, const SolverType *type, double per_second, float style,
                             float drag)
 {
@@ -46,12 +45,13 @@ static void long_run_create(LongRun *run, const SolverType *type, double per_sec
         }
     strands.first[count] = at;
     fixture_create_strands(&run->fixture, &strands, type->name, "", style, drag);
-    run->fixture.params.stretch_drawn = true; // the strand that has the energy
+    // energy is that of the strand without stretch correction
+    run->fixture.params.stretch_drawn = true;
     run->fixture.step.dt = 1 / per_second;
     strands_destroy(&strands);
 }
 
-// Positions of all strands; batches lie in the order of vertex counts.
+// Positions of all strands; batches are in the order of vertex counts.
 static void long_run_read(LongRun *run, Vec positions[LONG_SIZES][LONG_KINDS][LONG_MOST])
 {
     for (uint32_t i = 0; i < LONG_SIZES; ++i) {
@@ -65,19 +65,19 @@ static void long_run_read(LongRun *run, Vec positions[LONG_SIZES][LONG_KINDS][LO
     }
 }
 
-// Whether a solver has velocities of the strand that is drawn.
+// Whether a solver stores velocities of the strand that is drawn.
 static bool has_velocities(const SolverType *type)
 {
     return !solver_is_static(type) && strcmp(type->name, "split") != 0;
 }
 
-// Seconds of the steps that the solver really takes.
+// Duration of the sub-steps that the solver takes.
 static double small_step(const HairFixture *fixture)
 {
     return fixture->step.dt / solver_substeps(&fixture->solver, &fixture->step);
 }
 
-// The velocities that a step has led to: the solver's own where it keeps them.
+// The velocities after a step: the solver's own if it stores them.
 static void long_run_velocities(LongRun *run, Vec now[LONG_SIZES][LONG_KINDS][LONG_MOST])
 {
     const Solver *solver = &run->fixture.solver;
@@ -105,16 +105,16 @@ static void long_run_velocities(LongRun *run, Vec now[LONG_SIZES][LONG_KINDS][LO
     }
 }
 
-// Whether a solver's velocities are those at a step's end, by the midpoint rule; else they lie in
-// the middle of the way that led there.
+// Whether a solver's velocities belong to the step's end, by the midpoint rule; otherwise they
+// belong to its middle.
 static bool ends_with_velocities(const SolverType *type)
 {
     return strcmp(type->name, "hybrid") == 0 || strcmp(type->name, "emulation") == 0;
 }
 
-// Kinetic and potential energy over what the strand could lose, less what it had: 0 at the start,
-// -1 when it hangs at rest. `v` are the velocities of the last dt seconds, `q` where they led to;
-// dt = 0: the velocities there.
+// Kinetic and potential energy minus the start's energy, relative to what the strand can lose: 0 at
+// the start, -1 when it hangs at rest. `v` are the velocities of the last dt seconds that led to
+// the positions `q`; dt = 0: the velocities at `q`.
 static double energy(const Vec *start, const Vec *q, const Vec *v, double dt, int n)
 {
     const double g = 9.81;
@@ -129,7 +129,7 @@ static double energy(const Vec *start, const Vec *q, const Vec *v, double dt, in
     return sum / budget;
 }
 
-// `most`: the greatest energy of each size so far.
+// `most`: the largest energy of each size so far.
 static void check_frame(LongRun *run, const SolverType *type, double most[LONG_SIZES])
 {
     static Vec now[LONG_SIZES][LONG_KINDS][LONG_MOST];
@@ -151,7 +151,7 @@ static void check_frame(LongRun *run, const SolverType *type, double most[LONG_S
         }
 }
 
-// Energy is looked at every step in the first second, when hair falls, and 4 times a second then.
+// Energy is checked every step in the first second, while hair falls, and then 4 times a second.
 static int check_run(const SolverType *type, double per_second, float style, float drag,
                      double seconds)
 {
@@ -181,9 +181,9 @@ static int check_run(const SolverType *type, double per_second, float style, flo
     return failures;
 }
 
-static int long_failures; // of all solvers, so that all are told
+static int long_failures; // of all solvers, so that all are reported
 
-// TEST_SECONDS=60 makes it the minute that the solvers' figures are stated for.
+// TEST_SECONDS=60 runs the one minute for which the documentation states the solvers' figures.
 static void check_long(const SolverType *type, const char *variant)
 {
     const char *asked = getenv("TEST_SECONDS");

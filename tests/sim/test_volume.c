@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Volume: a groom at rest feels nothing, momentum is kept, energy never rises, hair keeps its
-// space.
+// Volume: no force on a groom at rest, momentum is conserved, energy never rises, hair keeps its
+// volume.
 #include "gen/strands_make.h"
 #include "sim/simulation.h"
 #include "support/driver_threads.h"
@@ -67,7 +67,7 @@ static SimulationSection *section_of(World *world)
     return &world->simulation.sections[0];
 }
 
-// The buffer of the velocities of the only batch; split's tips.
+// The buffer of velocities of the only batch; for split, those of the tips.
 static const GpuBuffer *velocity_buffer(World *world)
 {
     SolverBuffer buffers[SOLVER_MAX_BUFFERS];
@@ -93,8 +93,8 @@ static Float3 *read_positions(World *world)
     return x;
 }
 
-// Squeezes the hair to the share of its place about (0, -0.2, 0), with velocities that squeeze it
-// further at `speed` 1/s, and others at random of up to 1 m/s. Returns the velocities.
+// Compresses the hair to `share` of its size about (0, -0.2, 0), with velocities that compress it
+// further at `speed` 1/s, plus random velocities of up to 1 m/s. Returns the velocities.
 static Float4 *squeeze(World *world, float share, float speed)
 {
     Hair *hair = &section_of(world)->hair;
@@ -122,7 +122,8 @@ static Float4 *squeeze(World *world, float share, float speed)
 static const SolverStep STILL = {
     .dt = 1.0 / FPS, .head_old.rotation = {0, 0, 0, 1}, .head.rotation = {0, 0, 0, 1}};
 
-// Also under the roots, and where strands rush together: nothing is denser than at rest.
+// Also under the roots, and where strands move towards each other: nowhere is the density above
+// that at rest.
 static void groom_at_rest_feels_nothing(void **state)
 {
     (void)state;
@@ -170,7 +171,7 @@ static void momentum_is_kept(void **state)
     destroy(&world);
 }
 
-// Of all particles, J for 1 kg each.
+// Sum over all particles, J with 1 kg each.
 static double kinetic_energy(World *world)
 {
     const HairBatch *batch = &section_of(world)->hair.batches[0];
@@ -183,7 +184,7 @@ static double kinetic_energy(World *world)
     return sum;
 }
 
-// With the potential one.
+// Including potential energy.
 static double energy(World *world)
 {
     Float3 *x = read_positions(world);
@@ -193,7 +194,7 @@ static double energy(World *world)
     return sum;
 }
 
-// What falling can give at most: every particle from straight up to straight down.
+// The most that falling can release: every particle moves from straight up to straight down.
 static double range_of(const World *world)
 {
     double sum = 0;
@@ -202,7 +203,7 @@ static double range_of(const World *world)
     return sum;
 }
 
-// The bound is that of test_solvers_energy.c, here above the least energy of all steps before.
+// The bound is that of test_solvers_energy.c, relative to the lowest energy of all previous steps.
 static void energy_never_rises(void **state)
 {
     (void)state;
@@ -224,7 +225,7 @@ static void energy_never_rises(void **state)
     }
 }
 
-// Voxels of `edge` m that the strands go through.
+// Number of voxels of size `edge` m that the strands pass through.
 static double count_voxels(World *world, double edge)
 {
     enum { SIDE = 256, PARTS = 4 };
@@ -250,8 +251,8 @@ static double count_voxels(World *world, double edge)
     return count;
 }
 
-// The share of a groom's voxels, of 1 % of its height, that loose hair still fills after it has
-// fallen on a head and shoulders for 4 s.
+// Loose hair falls on a head and shoulders for 4 s. Returns the share of the groom's voxels, with 1
+// % of its height, that it still fills.
 static double kept_voxels(const char *algo, float volume)
 {
     World world;
@@ -275,7 +276,7 @@ static void long_hair_keeps_its_space(void **state)
     assert_true(kept_voxels("hybrid", 1) >= 0.85);
     assert_true(kept_voxels("chain", 1) >= 0.85);
     double split = kept_voxels("split", 1);
-    assert_true(split >= 0.85 && split <= 1.3); // 1.13; without volume 0.37
+    assert_true(split >= 0.85 && split <= 1.3); // measured 1.13; without volume 0.37
 }
 
 static void threads_do_not_matter(void **state)
@@ -320,7 +321,7 @@ static void every_solver_has_it(void **state)
     }
 }
 
-// Of two batches each has its densities at rest: nothing of either stays with the driver.
+// Two batches have rest densities of their own; all their buffers must be deleted.
 static void every_buffer_is_given_back(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Wind by place: the mixture of the step's four directions at a strand's root
+// Wind that depends on place: each strand gets a mixture of the step's four directions by its root
 // (glsl/sim/forces.glsl).
 #include "support/hair_fixture.h"
 #include "support/twin.h"
@@ -15,19 +15,18 @@
 enum { STRANDS = 40, PAIR = 2 };
 static const double LINK = 0.2, DRAG = 3, RATE = 64;
 
-// Winds across the links, which lie along x: each direction differs from all others in both
-// components.
+// Winds across the links, which lie along x: the four differ in both components.
 static const float WINDS[4][3] = {{0, 3, 1}, {0, -2, 4}, {0, 1, -5}, {0, -4, -1}};
 
-// From 0 to 1 and back while t grows by 1, as 3 w^2 - 2 w^3.
+// A wave from 0 to 1 and back per period of 1, as 3 w^2 - 2 w^3.
 static double wave(double t)
 {
     double way = fabs(2 * (t - floor(t)) - 1);
     return way * way * (3 - 2 * way);
 }
 
-// By two bent waves over the root's place, between the first two and between the last two
-// directions by the first, between those by the second.
+// Two curved waves depend on the root's position: the first mixes directions 1 and 2 and directions
+// 3 and 4, and the second mixes the two results.
 static void strand_wind(const Vec root, Vec wind)
 {
     double x = 2.1 * root[0] + 1.3 * root[1] - 2.3 * root[2],
@@ -41,9 +40,10 @@ static void strand_wind(const Vec root, Vec wind)
     }
 }
 
-// Without gravity, from rest, a tip is kicked by w (1 - e^{-ch}), flies for dt, and its link turns
-// to there. The first step's forces act for half of it. Measured: 2.2e-8 m,
-// and three times that: positions round by 2^-27, the few operations to them by as much each.
+// Without gravity and from rest, a tip gets the velocity w (1 - e^{-ch}), moves for dt, and its
+// link turns to that position. In the first step, forces act for half of it. Measured: 2.2e-8 m;
+// three times that is allowed: positions are rounded by 2^-27, and each of the few operations as
+// much.
 static void winds_mix_by_the_place_of_the_root(void **state)
 {
     (void)state;
