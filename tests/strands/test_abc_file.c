@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Alembic's Ogawa files. tests/data/curves.abc, groom.abc and unreal.abc were written by
-// Alembic 1.8 itself. What is written here is read back by our own reader alone.
+// Alembic files in the Ogawa format. Alembic 1.8 wrote tests/data/curves.abc, groom.abc and
+// unreal.abc. Files that the tests write are read by our own reader only.
 #include "strands/formats/frames_file.h"
 #include "strands/strands_edit.h"
 #include "strands/strands_read.h"
@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-// Strands of 2 and 3 vertices with all that strands can have.
+// Strands of 2 and 3 vertices with all attributes.
 static Strands make_rich(void)
 {
     static const float positions[5][3] = {
@@ -77,7 +77,7 @@ static void everything_that_strands_have_reads_back_to_the_bit(void **state)
     assert_int_equal(format_write(path, FORMAT_ABC, &strands, NULL), RESULT_OK);
     assert_int_equal(strands_read(&back, path, NULL, &report, NULL), RESULT_OK);
     assert_int_equal(report.kind, FORMAT_ABC);
-    assert_false(report.unit_guessed || report.up_guessed); // the file says them
+    assert_false(report.unit_guessed || report.up_guessed); // the file contains both
     assert_same(&strands, &back);
     strands_destroy(&strands);
     strands_destroy(&back);
@@ -113,7 +113,7 @@ static void frames_are_samples_at_their_times(void **state)
         assert_int_equal(frames_file_add(&file, i, (const float(*)[3])strands.position, NULL),
                          RESULT_OK);
     }
-    assert_false(temporary_has(state, "x.abc")); // not before it is whole
+    assert_false(temporary_has(state, "x.abc")); // not before it is complete
     assert_int_equal(frames_file_finish(&file, NULL), RESULT_OK);
     back = read_data(path, &frames, NULL);
     assert_int_equal(frames.count, 3);
@@ -133,8 +133,8 @@ static void assert_near(const float (*points)[3], size_t count, const double (*w
         for (int k = 0; k < 3; ++k) assert_float_equal(points[v][k], wanted[v][k], 1e-6);
 }
 
-// Turned, moved and scaled by a transform; strands of 3, 5 and 2 points, of which samples 2 and 3
-// are alike; a B-spline at its knots; indexed texture coordinates; one width for all.
+// Rotated, moved and scaled by a transform; strands of 3, 5 and 2 points, whose samples 2 and 3 are
+// equal; a B-spline with its knots; indexed texture coordinates; one width for all.
 static void alembics_own_curves_are_read(void **state)
 {
     (void)state;
@@ -156,7 +156,7 @@ static void alembics_own_curves_are_read(void **state)
     assert_near((const float(*)[3])frames.position + 52, 4, spline);
     const float uv[4][2] = {{0.3f, 0.4f}, {0.1f, 0.2f}, {0.3f, 0.4f}, {0.7f, 0.8f}};
     assert_memory_equal(strands.strand_uv, uv, sizeof uv);
-    // 2 mm, twice as large by the transform; 2 and 1 mm of the spline.
+    // 2 mm, doubled by the transform; 2 and 1 mm on the spline.
     assert_float_equal(strands.vertex_thickness[0], 4e-3, 1e-9);
     assert_float_equal(strands.vertex_thickness[9], 4e-3, 1e-9);
     assert_float_equal(strands.vertex_thickness[13], 1e-3, 1e-9);
@@ -172,7 +172,7 @@ static void points_a_strand_may_be_asked_for(void **state)
     options.points_per_strand = 13;
     assert_int_equal(strands_read(&strands, "tests/data/curves.abc", &options, NULL, NULL),
                      RESULT_OK);
-    assert_int_equal(strands_size(&strands, 3), 13); // the spline; lines are as they are
+    assert_int_equal(strands_size(&strands, 3), 13); // the spline; straight segments are unchanged
     assert_int_equal(strands_size(&strands, 0), 3);
     strands_destroy(&strands);
 }
@@ -192,8 +192,8 @@ static void a_groom_of_alembic_keeps_its_strands_and_frames(void **state)
     strands_destroy(&strands);
 }
 
-// unreal.abc: 4 strands with widths in centimetres, of groups 0, 1, 0, 1, the last one a guide; and
-// 2 of group 5, which the object says once. Its unit is the centimetre.
+// unreal.abc: 4 strands with widths in centimetres and groups 0, 1, 0, 1, the last of them a guide;
+// and 2 strands of group 5, given once for their object. Its unit is the centimetre.
 static void unreals_attributes_are_read(void **state)
 {
     (void)state;
@@ -211,7 +211,7 @@ static void unreals_attributes_are_read(void **state)
     assert_float_equal(strands.strand_uv[2][0], 0.2, 1e-7);
     assert_true(strands.color[3][0] == 0.25f && strands.color[4][1] == 0.125f);
     strands_destroy(&strands);
-    // Centimetres are those of widths, whatever the unit.
+    // Widths are in centimetres, whatever the unit.
     assert_int_equal(strands_read(&strands, "tests/data/unreal.abc", &METRES, NULL, NULL),
                      RESULT_OK);
     assert_float_equal(strands.vertex_thickness[0], 3e-4, 1e-9);
@@ -282,7 +282,7 @@ static void what_is_no_groom_says_what_it_is(void **state)
     bytes.data[5] = 0;
     refuse(bytes.data, bytes.size, "the file was not closed");
     refuse(mesh.data, mesh.size, "meshes without hair: a mesh stands behind --mesh");
-    // A group of more parts than there are bytes.
+    // A group with more parts than the file has bytes.
     bytes.data[5] = 0xff;
     uint64_t root;
     memcpy(&root, bytes.data + 8, 8);
@@ -292,7 +292,7 @@ static void what_is_no_groom_says_what_it_is(void **state)
     bytes_destroy(&mesh);
 }
 
-// The four numbers of groom_guide stand in 24 bytes, whose count is at byte 700.
+// The four numbers of groom_guide take 24 bytes; their count is at byte 700.
 static void attributes_of_other_counts_than_the_strands_are_refused(void **state)
 {
     (void)state;
@@ -305,7 +305,7 @@ static void attributes_of_other_counts_than_the_strands_are_refused(void **state
     bytes_destroy(&bytes);
 }
 
-// groom_width of one object, and another without any.
+// One object has groom_width and the other has no widths.
 static void widths_that_only_some_objects_have_are_left_out_with_a_line(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of points: .ply of every kind, .npy and .npz, and files that are not hair at all.
+// Files of points: .ply of every kind, .npy and .npz, and files that do not contain hair.
 #include "base/npy_array.h"
 #include "base/zip.h"
 #include "strands/formats/format.h"
@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-// Content that grows.
+// File contents that are built up piece by piece.
 typedef struct Pile {
     uint8_t data[8192];
     size_t size;
@@ -65,7 +65,7 @@ static void refuse(const void *data, size_t size, const StrandsReadOptions *opti
 
 // --- .ply
 
-// Every type, lists, an unknown element before the vertices and one behind, x after y.
+// Every type, lists, an unknown element before the vertices and one after, x after y.
 static void binary_ply_of_every_type_is_read_in_both_byte_orders(void **state)
 {
     (void)state;
@@ -133,7 +133,7 @@ static void text_ply_with_edges_is_read(void **state)
     strands_destroy(&strands);
 }
 
-// Red, green, blue and alpha of 16 bits, and of 8: each over its own largest value.
+// Red, green, blue and alpha with 16 bits, and with 8: each is divided by its largest value.
 static void colours_of_whole_numbers_are_shares_of_their_largest(void **state)
 {
     (void)state;
@@ -163,7 +163,7 @@ static void colours_of_whole_numbers_are_shares_of_their_largest(void **state)
     }
 }
 
-// `strands` of `points` points each, roots far apart; `odd` adds one to the first strand.
+// `strands` of `points` points each, with roots far apart; `odd` adds a point to the first strand.
 static char *make_cloud(int strands, int points, bool odd)
 {
     char *text = malloc((size_t)(strands * points + 8) * 32 + 200), *at = text;
@@ -236,7 +236,7 @@ static void malformed_ply_is_refused(void **state)
     refuse(told, strlen(told), &(StrandsReadOptions){.points_per_strand = 2}, "has no effect");
 }
 
-// Rows without numbers take no bytes: forty thousand million of them take no time either.
+// Rows without properties take no bytes: forty thousand million of them must take no time.
 #define NOTHING(name) "element " name " 4000000000\n"
 static void rows_of_nothing_are_passed_over(void **state)
 {
@@ -308,7 +308,7 @@ static void npy_of_every_float_and_order_is_read(void **state)
             }
 }
 
-// Every half below the smallest ordinary one, 2^-14, and some above: m 2^-24, exactly.
+// Every half float below the smallest normal one, 2^-14, and some above: exactly m 2^-24.
 static void small_halves_are_read_exactly(void **state)
 {
     (void)state;
@@ -318,7 +318,7 @@ static void small_halves_are_read_exactly(void **state)
         pile = make_npy(1, "{'descr': '<f2', 'fortran_order': False, 'shape': (1, 1100, 3), }");
         for (int m = 0; m < COUNT; m++) {
             pile_number(&pile, (uint64_t)(m | sign << 15), 2, false);
-            // y keeps neighbours apart: m below 2048 is 2^e (1 + k / 1024).
+            // y makes neighbours distinct: m below 2048 is 2^e (1 + k / 1024).
             int e = 10;
             while (m && m >> e == 0) e--;
             pile_number(&pile, m ? (uint64_t)((e + 15) << 10 | (m - (1 << e)) << (10 - e)) : 0, 2,
@@ -328,7 +328,7 @@ static void small_halves_are_read_exactly(void **state)
         Strands strands = read_well(pile.data, pile.size, &METRES, &(StrandsReport){0});
         assert_int_equal(strands.vertex_count, COUNT);
         for (int m = 0; m < COUNT; m++) {
-            // From 1024 on the exponent is 1: (1024 + m % 1024) 2^-24 again.
+            // From 1024 on the exponent is 1, which gives (1024 + m % 1024) 2^-24 again.
             float expected = ldexpf((float)m, -24);
             assert_true(strands.position[m][0] == (sign ? -expected : expected));
             assert_true(strands.position[m][1] == (float)m);
@@ -369,7 +369,7 @@ static void other_npy_is_refused(void **state)
     refuse(pile.data, pile.size, &METRES, "other elements of shape (1, 2, 3)");
 }
 
-// --- .npz, as other programs write it: deflated, with descriptors behind the data and zip64.
+// --- .npz as other programs write it: deflated, with data descriptors after the data, and zip64.
 
 typedef struct Archive {
     Pile pile, directory;
@@ -436,7 +436,8 @@ static void end_archive(Archive *archive)
     pile_text(pile, "note");
 }
 
-// A directory that claims more files than the archive has bytes for is refused before any is read.
+// A directory that declares more files than the archive has bytes for is refused before anything is
+// read.
 static void a_directory_has_room_for_its_files(void **state)
 {
     (void)state;
@@ -457,7 +458,7 @@ static Pile make_floats(const char *shape, int count)
     return pile;
 }
 
-// The letter of the axis in both byte orders and as one byte: where it stands in its word differs.
+// The letter of the up axis in both byte orders and as one byte: its position in the word differs.
 static void the_axis_that_is_up_is_read_in_every_byte_order(void **state)
 {
     (void)state;
@@ -571,7 +572,7 @@ static void npz_that_lies_is_refused(void **state)
            "(3, 2): expected floats of shape (strands, points, 3)");
 }
 
-// --- Files that are not hair.
+// --- Files without hair.
 
 static void files_of_other_programs_are_named_with_what_converts_them(void **state)
 {

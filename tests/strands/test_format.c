@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table of hair file formats: what is written reads back to the bit.
+// The table of hair file formats: written files are recognised and read back exactly.
 #include "base/random.h"
 #include "gen/strands_make.h"
 #include "image/image.h"
@@ -19,7 +19,7 @@
 
 static const StrandsReadOptions METRES = {.unit = 1.0f};
 
-// Awkward numbers: any bits that are a float of ordinary size.
+// Awkward numbers: random bits of floats of normal size.
 static Strands make_awkward(void)
 {
     StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_CURLS);
@@ -57,7 +57,7 @@ static void rows_of_the_table_are_complete(void **state)
     for (FormatKind kind = 0; kind < FORMAT_KINDS; kind++) {
         const Format *format = FORMAT_TABLE[kind];
         assert_true(format && format->match && format->read && format->suffix[0] == '.');
-        if (format->write) assert_int_equal(kind, written++); // the n-th word is the n-th kind
+        if (format->write) assert_int_equal(kind, written++); // names are in the order of kinds
         format_list_names(text, sizeof text);
         assert_non_null(strstr(text, format->name));
         format_list_suffixes(text, sizeof text);
@@ -81,7 +81,7 @@ static void reading_back_gives_the_same_bits(void **state)
     strands_destroy(&strands);
 }
 
-// Strands of 2 .. 5 vertices, of equal size if `even`, with all that the format holds.
+// Strands of 2 to 5 vertices, of equal size if `even`, with all attributes of the format.
 static Strands make_full(const Format *format, uint32_t count, bool even)
 {
     Strands strands;
@@ -100,7 +100,7 @@ static Strands make_full(const Format *format, uint32_t count, bool even)
         for (uint32_t v = 0; v < strands.vertex_count; v++)
             strands.vertex_thickness[v] = 1e-5f * (float)(1 + v % 7);
     }
-    if (format->features & STRANDS_HAS_COLOR) { // in whole levels of 8 bits, which all of them hold
+    if (format->features & STRANDS_HAS_COLOR) { // multiples of 1/255, which all formats can hold
         strands.color = malloc(strands.vertex_count * sizeof *strands.color);
         for (uint32_t v = 0; v < strands.vertex_count; v++)
             for (uint32_t k = 0; k < 4; k++) {
@@ -111,8 +111,8 @@ static Strands make_full(const Format *format, uint32_t count, bool even)
     return strands;
 }
 
-// A property of every format and count: above all of a count whose bytes begin like a text (35 is
-// '#', 118 is 'v', 108 is 'l').
+// Tests every format and count, especially counts whose bytes look like the start of a text file
+// (35 is '#', 118 is 'v', 108 is 'l').
 static void what_is_written_is_known_again_and_read_back(void **state)
 {
     static const uint32_t COUNTS[] = {1,   2,   9,   10,  13,  32,  35,          47,
@@ -140,7 +140,7 @@ static void what_is_written_is_known_again_and_read_back(void **state)
             if (strands.color && !back.color) fail_msg("%s: no colours", format->name);
             for (uint32_t v = 0; strands.color && v < strands.vertex_count; v++)
                 for (int k = 0; k < 4; k++)
-                    // HAIR files have 1 - opacity, rounded to 2^-24 at most.
+                    // HAIR files store 1 - opacity, which is rounded to 2^-24 at most.
                     if (fabsf(back.color[v][k] - strands.color[v][k]) > (k == 3 ? 0x1p-24f : 0))
                         fail_msg("%s: colour %d of vertex %u: %.9g, not %.9g", format->name, k, v,
                                  (double)back.color[v][k], (double)strands.color[v][k]);
@@ -153,8 +153,8 @@ static void what_is_written_is_known_again_and_read_back(void **state)
     }
 }
 
-// Files that nothing marks but their counts, of every first byte, against all formats: `floats`
-// numbers a vertex.
+// Files that start with a count instead of a signature, with every first byte, against all formats;
+// `floats`: numbers per vertex.
 static void every_first_byte_of_a_count_is_told_from_text(void **state)
 {
     (void)state;
@@ -272,7 +272,7 @@ static void lines_of_obj_files_are_strands(void **state)
     assert_int_equal(strands_size(&a, 1), 2);
     assert_true(a.position[3][0] == 5 && a.position[4][1] == 1 && a.position[6][1] == 1);
     Strands edges = read_obj(state, "v 0 0 0\nv 0 1 0\nv 0 2 0\nl 1 2\nl 2 3\nl 1 3\n", RESULT_OK,
-                             &error); // two edges of one strand, and another
+                             &error); // two edges of one strand, and an edge of another
     assert_int_equal(edges.strand_count, 2);
     assert_int_equal(strands_size(&edges, 0), 3);
     strands_destroy(&a);

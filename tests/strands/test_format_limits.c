@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a hair file leaves out, and where a reader's guesses turn: defaults of every kind, and both
-// sides of every threshold.
+// What a hair file may leave out, and the thresholds of a reader's guesses: defaults of every kind,
+// and both sides of every threshold.
 #include "strands/formats/format.h"
 #include "support/reading.h"
 #include "support/temporary.h"
@@ -15,7 +15,8 @@
 
 // --- Thresholds.
 
-// One strand of `length` units in a file of USC-HairSalon, which says nothing of its unit.
+// The unit guessed for one strand of `length` units in a file of USC-HairSalon, which does not
+// contain its unit.
 static float guessed_unit(float length)
 {
     const struct {
@@ -29,7 +30,7 @@ static float guessed_unit(float length)
     return report.unit_used;
 }
 
-// In text, from the origin on.
+// The same for a text file; the strand starts at the origin.
 static float guessed_unit_of_text(float length)
 {
     char text[200];
@@ -42,7 +43,7 @@ static float guessed_unit_of_text(float length)
     return report.unit_used;
 }
 
-// Hair as long as a head is high, 0.35 m, times 10 and times 10 sqrt(1000); in text 5 units.
+// The height of a head, 0.35 m, times 10 and times 10 sqrt(1000); 5 units in text.
 static void units_change_at_their_thresholds(void **state)
 {
     (void)state;
@@ -56,7 +57,7 @@ static void units_change_at_their_thresholds(void **state)
         assert_true(guessed_unit_of_text(TEXTS[i].length) == TEXTS[i].unit);
 }
 
-// Angles up to a full turn are radians: one beyond makes all three degrees.
+// Angles of up to a full turn are radians; one larger angle makes all three degrees.
 static void angles_beyond_a_turn_are_degrees(void **state)
 {
     (void)state;
@@ -80,7 +81,7 @@ static void angles_beyond_a_turn_are_degrees(void **state)
         Strands strands = reading_good(text, &report);
         assert_int_equal(report.rotation_was_deg, CASES[i].degrees);
         float unit = CASES[i].degrees ? 0.0174532925f : 1, *tip = strands.position[1];
-        // However the three are ordered, a turn about x or y alone takes z away from the tip.
+        // In any order of the three, a rotation about x or y alone takes z away from the tip.
         if (angle[2] == 0 && (angle[0] == 0 || angle[1] == 0))
             assert_true(fabsf(tip[2] - cosf(angle[0] * unit) * cosf(angle[1] * unit)) < 1e-6f);
         strands_destroy(&strands);
@@ -91,7 +92,7 @@ static void angles_beyond_a_turn_are_degrees(void **state)
 
 enum { LINES = 2, SIZE = 3, COUNT = LINES * SIZE, TFX3_BYTES = 296, TFX4_BYTES = 160 };
 
-// Two strands of three vertices; with all arrays that there are.
+// Two strands of three vertices; if `full`, with all possible arrays.
 static Strands make_strands(bool full)
 {
     Strands strands;
@@ -147,7 +148,7 @@ static void versions_3_and_4_are_taken_and_no_others(void **state)
     strands_destroy(&made);
 }
 
-// An array of a file: where its header says where it begins, and its length in bytes.
+// An array of a file: where the header stores its offset, and its length in bytes.
 typedef struct Position {
     FormatKind kind;
     size_t at, bytes;
@@ -169,7 +170,7 @@ static void assert_equal_arrays(const Strands *a, const Strands *b)
     assert_memory_equal(a->color, b->color, COUNT * sizeof *a->color);
 }
 
-// Each array in its turn goes to the file's end, or a zero is written for its place.
+// Each array in turn is moved to the file's end, or its offset is set to 0.
 static void arrays_may_lie_in_any_order(void **state)
 {
     Strands made = make_strands(true);
@@ -199,7 +200,7 @@ static void arrays_may_lie_in_any_order(void **state)
 
 enum { POINTS = 2, THICKNESS = 4, TRANSPARENCY = 8, COLOR = 16 };
 
-// Two strands of three vertices; each array that the bits name has its own values.
+// Two strands of three vertices; each array that the bits select has its own values.
 static Result read_hair(Strands *strands, uint32_t arrays, uint32_t broken, StrandsReport *report)
 {
     struct {
@@ -250,7 +251,7 @@ static void what_hair_files_leave_out_has_their_defaults(void **state)
     }
 }
 
-// The vertex's first byte is named.
+// The message names the vertex's first byte.
 static void a_defect_is_reported_with_its_byte(void **state)
 {
     (void)state;
@@ -268,8 +269,8 @@ static void a_defect_is_reported_with_its_byte(void **state)
 
 // --- All kinds.
 
-// Strands that have positions only come back without anything else; text has UVs always, binary 4
-// which vertices may move.
+// Strands with positions only are read back without other attributes, except that text always has
+// UVs and version 4 always has mobilities.
 static void what_was_not_written_is_not_there(void **state)
 {
     Strands made = make_strands(false);
@@ -308,7 +309,7 @@ static void what_was_not_written_is_not_there(void **state)
 #define RGB   "property float red\nproperty float green\nproperty float blue\n"
 #define BYTES "property uchar red\nproperty uchar green\nproperty uchar blue\n"
 
-// By the formats' definitions; 128/255 of sRGB is 0.2158605 of light.
+// Defaults as the formats define them; 128/255 in sRGB is 0.2158605 in linear light.
 static const struct {
     const char *text;
     float unit, tip[3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The automatic radius: hair and fur of any density cover what they grow on.
+// The automatic radius: hair and fur of any density cover their surface.
 #include "gen/strands_make.h"
 #include "strands/paint.h"
 
@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-enum { POINTS = 20 }; // along each side of what is looked at
+enum { POINTS = 20 }; // along each side of the test area
 
 static Strands make_fur(uint32_t count, uint32_t size, double length)
 {
@@ -25,8 +25,8 @@ static Strands make_fur(uint32_t count, uint32_t size, double length)
     return strands;
 }
 
-// Whether the segment from a to b, seen along z, lies within a distance of the point (x, y), by its
-// radii there.
+// Whether the point (x, y), seen along z, lies on the segment from a to b with these radii at its
+// ends.
 static bool covers(const float a[3], const float b[3], double at_a, double at_b, double x, double y)
 {
     double u = (double)b[0] - a[0], v = (double)b[1] - a[1], square = u * u + v * v;
@@ -50,7 +50,7 @@ static bool is_covered(const Strands *strands, double radius, double x, double y
     return false;
 }
 
-// Share of the points of a disc as large as the ball (0.1 m) that its front half's fur covers.
+// The share of a disc as large as the ball (0.1 m) that the fur of its front half covers.
 static double find_coverage(const Strands *strands, double radius)
 {
     int covered = 0, count = 0;
@@ -64,7 +64,8 @@ static double find_coverage(const Strands *strands, double radius)
     return (double)covered / count;
 }
 
-// A bear's fur of four vertices a strand was drawn with a 400th of its length, and seen through.
+// Fur of a bear with four vertices per strand was once drawn with a 400th of its length, so that
+// the skin was visible.
 static void fur_of_any_density_covers_the_body(void **state)
 {
     (void)state;
@@ -74,14 +75,16 @@ static void fur_of_any_density_covers_the_body(void **state)
     } CASES[] = {{48113, 4, 0.03, 0.9},
                  {12000, 8, 0.03, 0.8},
                  {100000, 3, 0.01, 0.9},
-                 {48113, 4, 0.008, 0.8}}; // as wide as 1/12 of its length
+                 {48113, 4, 0.008, 0.8}}; // a strand's width is 1/12 of its length
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
         Strands strands = make_fur(CASES[i].count, CASES[i].size, CASES[i].length);
         double radius = (double)paint_auto_radius(&strands, 0);
         double coverage = find_coverage(&strands, radius);
-        // Upright fur points at the eye in the middle of the ball, where fewer than 3 lie.
+        // In the middle of the ball, upright fur points at the eye; fewer than 3 of the points lie
+        // there.
         if (coverage < CASES[i].least) fail_msg("case %zu: %g of it is covered", i, coverage);
-        assert_true(find_coverage(&strands, CASES[i].length / 400) < coverage - 0.1); // can fail
+        // shows that the test can fail
+        assert_true(find_coverage(&strands, CASES[i].length / 400) < coverage - 0.1);
         strands_destroy(&strands);
     }
 }
@@ -96,13 +99,13 @@ static void followers_share_the_picture(void **state)
     strands_destroy(&strands);
 }
 
-// A single strand as thick as would cover its box would be no strand.
+// A single strand so thick that it covers its bounding box would not look like a strand.
 static void few_strands_still_look_like_fibres(void **state)
 {
     (void)state;
     Strands one = make_fur(1, 8, 0.3), few = make_fur(100, 8, 0.03);
     assert_true(paint_auto_radius(&one, 0) <= 0.3f / 399);
-    // At most a 300th of the side of the ball's silhouette, 0.23 m, and less, where cells are
+    // At most a 300th of the side of the ball's silhouette, 0.23 m; less, because some cells are
     // empty.
     float thick = paint_auto_radius(&few, 0);
     assert_true(thick > 0.03f / 399 && thick < 0.25f / 300);

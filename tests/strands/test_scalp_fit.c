@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heads that are found by the roots of hair, and hair that grows on none.
+// Finding a head by the roots of hair, and hair that grows on no head.
 #include "base/random.h"
 #include "gen/strands_make.h"
 #include "strands/scalp_fit.h"
@@ -24,8 +24,8 @@ static Strands make_hair(StrandsStyle style)
     return strands;
 }
 
-// Strands of two vertices, 1 cm along the normal times `out`, with roots on the part of an
-// ellipsoid that is above `lowest` (of its height, -1 .. 1), `noise` (m) off it.
+// Strands of two vertices, 1 cm along the normal times `out`. Their roots lie on the part of an
+// ellipsoid above `lowest` (of its height, -1 .. 1), displaced by `noise` (m).
 static Strands make_scalp(uint32_t count, double lowest, double out, double noise)
 {
     Strands strands;
@@ -62,8 +62,8 @@ static void assert_near(const ScalpFit *fit, double most)
                      CENTRE[k], RADIUS[k]);
 }
 
-// The terms that are pulled to 0 cost more where fewer roots tell; a sphere would be off by 0.018
-// m. The radii are also smaller by the distance within which nine of ten roots lie.
+// Regularised terms cause larger errors where fewer roots determine them; a sphere would err by
+// 0.018 m. The radii are also smaller by the distance that nine of ten roots keep.
 static void a_part_of_an_ellipsoid_tells_the_rest(void **state)
 {
     (void)state;
@@ -83,7 +83,7 @@ static void roots_that_lie_off_do_not_count_much(void **state)
 {
     (void)state;
     Strands strands = make_scalp(500, -0.3, 1, 0.0005);
-    for (uint32_t s = 0; s < 25; ++s) // a braid beside the head
+    for (uint32_t s = 0; s < 25; ++s) // a braid next to the head
         for (int k = 0; k < 3; ++k)
             for (uint32_t j = 0; j < 2; ++j)
                 strands.position[2 * s + j][k] =
@@ -102,7 +102,7 @@ static void hair_styles_have_a_head_and_roots_are_seen(void **state)
         ScalpFit fit = scalp_fit(&strands, 1);
         uint32_t outside = 0;
         if (!fit.found) fail_msg("%s", fit.reason);
-        assert_true(fit.error < 0.004); // a head is no ellipsoid
+        assert_true(fit.error < 0.004); // a head is not an exact ellipsoid
         for (uint32_t s = 0; s < strands.strand_count; ++s) {
             double square = 0;
             for (int k = 0; k < 3; ++k)
@@ -112,7 +112,7 @@ static void hair_styles_have_a_head_and_roots_are_seen(void **state)
             outside += square >= 1;
         }
         assert_true(outside >= 0.9 * strands.strand_count);
-        // Two halves of the hair, as two files, have the same head.
+        // Two halves of the hair, like two files, give the same head.
         Strands halves[2] = {strands, strands};
         halves[0].strand_count = strands.strand_count / 2;
         halves[0].vertex_count = strands.first[halves[0].strand_count];
@@ -141,7 +141,7 @@ static void what_is_no_scalp_gets_no_head(void **state)
     // Fur on a flat mat.
     for (uint32_t v = 0; v < patch.vertex_count; ++v) patch.position[v][1] = 0.01f * (v & 1);
     assert_refused(&patch, "");
-    // A head a kilometre wide.
+    // A head one kilometre wide.
     Strands large = make_scalp(500, -0.3, 1, 0);
     for (uint32_t v = 0; v < large.vertex_count; ++v)
         for (int k = 0; k < 3; ++k) large.position[v][k] *= 1e4f;

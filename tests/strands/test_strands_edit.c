@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Changes and figures of strands.
+// Changes of strands, and their statistics.
 #include "convert/figures.h"
 #include "gen/strands_make.h"
 #include "strands/strands.h"
@@ -80,7 +80,7 @@ static void smoothing_keeps_ends_and_straight_lines_and_calms_zigzags(void **sta
     strands.first[1] = 11;
     strands.first[2] = 22;
     for (int v = 0; v < 22; v++) {
-        strands.position[v][1] = (float)(v % 11); // whole numbers: the filter is exact
+        strands.position[v][1] = (float)(v % 11); // integers: the filter is exact
         if (v >= 11) strands.position[v][0] = (float)(v % 2);
     }
     strands_smooth(&strands, 1);
@@ -115,7 +115,8 @@ static void moves_are_what_they_say(void **state)
     strands_destroy(&b);
 }
 
-// What is written with another unit and axis is read as what it was; powers of two are exact.
+// Strands that are written with another unit and axis are read back as they were; powers of two are
+// exact.
 static void units_of_output_are_those_of_input(void **state)
 {
     Strands a = make_curls(), b = make_curls(), back;
@@ -144,7 +145,7 @@ static void resampling_makes_equal_distances_and_keeps_ends(void **state)
     const ResampleOptions options = {.count = 21};
     assert_int_equal(strands_resample(&strands, &options, NULL), RESULT_OK);
     assert_int_equal(strands.vertex_count, 21);
-    // Rounding to float32 of numbers up to 2, and of segments that are added up in double.
+    // Rounding to float32 of numbers up to 2, and of segments that are summed in double precision.
     for (uint32_t v = 0; v < 21; v++) {
         assert_true(fabs(strands.position[v][1] - v / 20.0) < 1e-6);
         assert_true(fabs(strands.position[v][2] - v / 10.0) < 2e-6);
@@ -155,8 +156,8 @@ static void resampling_makes_equal_distances_and_keeps_ends(void **state)
     strands_destroy(&strands);
 }
 
-// A circle of radius 1 by chords of 22.5 degrees is off by 1 - cos(11.25 deg) = 0.019; a
-// centripetal Catmull-Rom spline by a tenth of that inside, where it has neighbours on both sides.
+// A circle of radius 1 by chords of 22.5 degrees errs by 1 - cos(11.25 deg) = 0.019; a centripetal
+// Catmull-Rom spline errs by a tenth of that where it has neighbours on both sides.
 static void the_spline_is_rounder_than_the_vertices(void **state)
 {
     (void)state;
@@ -172,7 +173,7 @@ static void the_spline_is_rounder_than_the_vertices(void **state)
             if (v > 16 && v < 48) worst[spline] = fmax(worst[spline], off);
             if (v == 0) continue;
             double d = hypot(p[0] - p[-3], p[1] - p[-2]);
-            // Chords cut corners: of the curve by at most its turn of 22.5 degrees at a vertex.
+            // Chords cut corners: the curve turns by at most 22.5 degrees at a vertex.
             if (v > 1) assert_true(fabs(d / step - 1) < 0.03);
             step = d;
         }
@@ -210,7 +211,7 @@ static void thinning_keeps_the_same_strands_for_the_same_seed(void **state)
     assert_int_equal(a.strand_count, 15);
     assert_true(same_positions(&a, &b));
     assert_false(same_positions(&a, &c));
-    uint32_t found = 0; // in the order of the file, with what belongs to them
+    uint32_t found = 0; // in the order of the file, with all their attributes
     for (uint32_t s = 0; s < all.strand_count && found < a.strand_count; s++)
         if (memcmp(all.position[all.first[s]], a.position[a.first[found]], sizeof(float[3])) == 0) {
             assert_true(all.vertex_thickness[all.first[s]] == a.vertex_thickness[a.first[found]]);
@@ -225,16 +226,16 @@ static void thinning_keeps_the_same_strands_for_the_same_seed(void **state)
     strands_destroy(&c);
 }
 
-// Chords of a circle with radius 1 and a turn of w: turn w, curvature w / (2 sin(w / 2)).
+// Chords of a circle of radius 1 that turn by w each: turn w, curvature w / (2 sin(w / 2)).
 static void figures_of_a_circle_are_known(void **state)
 {
     (void)state;
-    Strands strands = make_strand(91, quarter_circle); // a degree each
+    Strands strands = make_strand(91, quarter_circle); // one degree each
     Figures figures;
     assert_int_equal(figures_measure(&figures, &strands, NULL, NULL), RESULT_OK);
     const Figure *turn = &figures.figures[FIGURE_TURN];
     double w = 3.141592653589793 / 180, chord = 2 * sin(w / 2);
-    // Vertices are rounded by 6e-8, and a chord is 0.017: a turn is off by up to 2e-5.
+    // Vertices are rounded by 6e-8, and a chord is 0.017 long: a turn errs by up to 2e-5.
     assert_int_equal(turn->count, 89);
     assert_true(fabs(turn->min - 1) < 2e-3 && fabs(turn->max - 1) < 2e-3);
     assert_true(fabs(figures.figures[FIGURE_CURVATURE].median - w / chord) < 2e-3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hair on a mesh: fitted to it, its roots put onto it, pushed out of it, and how deep it is inside.
+// Hair on a mesh: fitting hair to it, moving roots onto it, pushing hair out of it, and depths
+// inside it.
 #include "mesh/mesh_read.h"
 #include "mesh/scalp.h"
 #include "strands/strands_mesh.h"
@@ -13,7 +14,7 @@
 
 #include <cmocka.h>
 
-// A ball of radius 0.1 m, whose triangles lie at most 0.22 mm below it: 0.1 (1 - cos(pi / 48)).
+// A ball of radius 0.1 m, whose triangles are at most 0.22 mm below it: 0.1 (1 - cos(pi / 48)).
 static const double RADIUS = 0.1, FLAT = 2.2e-4;
 enum { RINGS = 48 };
 
@@ -34,7 +35,7 @@ static void destroy_ball(Ball *ball)
     mesh_destroy(&ball->mesh);
 }
 
-// Strands of three vertices at these heights over the middle, along x, y and z.
+// Strands of three vertices along x, y and z, at these distances from the centre.
 static Strands make_spokes(float root, float middle, float tip)
 {
     Strands strands;
@@ -108,14 +109,14 @@ static void vertices_are_pushed_out_to_the_gap_and_no_others_move(void **state)
     assert_true(strands.position[2][0] == 0.2f && strands.position[8][2] == 0.2f);
     assert_int_equal(shift.vertices, 4);
     assert_int_equal(shift.strands, 3);
-    assert_float_equal(shift.median, 0.03, FLAT); // of those that were inside
+    assert_float_equal(shift.median, 0.03, FLAT); // of the strands that were inside
     assert_float_equal(shift.most, 0.03, FLAT);
     strands_destroy(&strands);
     destroy_ball(&ball);
 }
 
-// Another size, turned and elsewhere: the fit undoes it. The bob's roots lie 0.1 mm off the bundled
-// head's mesh, which is a thousandth of its radius: 0.3 %, 0.3 degrees and 1 mm are allowed.
+// A groom of another size, rotated and moved, is fitted back. The bob's roots are 0.1 mm off the
+// bundled head's mesh, a thousandth of its radius: 0.3 %, 0.3 degrees and 1 mm are allowed.
 static void a_groom_is_scaled_turned_and_moved_onto_its_head(void **state)
 {
     (void)state;

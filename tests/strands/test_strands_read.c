@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text files, units and axes, real files; binary ones are in test_strands_read_binary.c.
+// Text files, units and axes, real files; binary files are in test_strands_read_binary.c.
 #include "support/reading.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static void both_dialects_and_line_ends_are_read(void **state)
         StrandsReport report;
         Strands strands = reading_good(texts[i], &report);
         assert_int_equal(report.kind, FORMAT_TFX2);
-        assert_true(report.version == 2); // said or not
+        assert_true(report.version == 2); // given or not
         assert_int_equal(strands.vertex_count, 2);
         assert_memory_equal(strands.position[1], ((float[3]){1, 3, 3}), 12);
         assert_memory_equal(strands.strand_uv[0], ((float[2]){0.5f, 0.25f}), 8);
@@ -51,7 +51,7 @@ static void parameters_mean_what_they_say(void **state)
                      "bothEndsImmovable 1\nnumFollowHairsPerGuideHair 4\n"
                      "maxRadiusAroundGuideHair 0.5\nnumStrands 1\nis sorted 1\n" STRAND,
                      &report);
-    // (1, 2, 3) twice as large is (2, 4, 6); a quarter turn about y makes (6, 4, -2) of it.
+    // Doubling (1, 2, 3) gives (2, 4, 6); a quarter turn about y makes that (6, 4, -2).
     assert_true(fabsf(strands.position[0][0] - 16.0f) < 1e-5f);
     assert_true(fabsf(strands.position[0][1] - 4.0f) < 1e-5f);
     assert_true(fabsf(strands.position[0][2] + 2.0f) < 1e-5f);
@@ -62,8 +62,8 @@ static void parameters_mean_what_they_say(void **state)
     strands_destroy(&strands);
 }
 
-// About z, then x, then y, as DirectX's XMMatrixRotationRollPitchYaw does: a quarter turn about
-// each axis takes (1, 2, 3) somewhere else, and all three together do so in that order.
+// Rotations about z, then x, then y, like DirectX's XMMatrixRotationRollPitchYaw: a quarter turn
+// about each axis moves (1, 2, 3) differently, and the three together depend on their order.
 static void a_file_is_turned_about_each_axis(void **state)
 {
     (void)state;
@@ -86,7 +86,7 @@ static void a_file_is_turned_about_each_axis(void **state)
     }
 }
 
-// A kilometre away floats are 6e-5 apart: two vertices as near as that are one.
+// A kilometre away, floats are 6e-5 apart: two vertices at that distance are merged.
 static void far_away_rounding_makes_no_vertices(void **state)
 {
     (void)state;
@@ -99,7 +99,7 @@ static void far_away_rounding_makes_no_vertices(void **state)
     strands_destroy(&strands);
 }
 
-// Lines of a Wavefront file name their vertices in any order: the first defect is the first in the
+// Lines of a Wavefront file refer to vertices in any order: the reported defect is the first in the
 // file.
 static void the_first_defect_is_the_first_in_the_file(void **state)
 {
@@ -115,7 +115,7 @@ static void the_first_defect_is_the_first_in_the_file(void **state)
 static void numbers_are_rounded_as_strtof_does(void **state)
 {
     (void)state;
-    // The middle ones lie half way between floats, or so near that a double cannot tell.
+    // The middle numbers lie half-way between floats, or so near to that that doubles can't tell.
     static const char *const numbers[] = {"0.1",
                                           "-0",
                                           "1e-45",
@@ -284,7 +284,7 @@ static void strands_over_the_files_own_limit_stay_whole(void **state)
     strands_destroy(&strands);
 }
 
-// Strand s of n, each told by its u and by its height.
+// Strand s of n, identified by its u and its height.
 static char *write_many(const char *sorted, int count)
 {
     char *text = NULL;
@@ -356,7 +356,7 @@ static void units_are_guessed_by_size_and_said_to_be_guesses(void **state)
     strands_destroy(&strands);
 }
 
-// One strand of two vertices, the second at `x`, 0, `z`, in a HAIR file with this text.
+// One strand of two vertices, the second at `x`, 0, `z`, in a HAIR file with this info text.
 static Result read_hair(Strands *strands, float x, float z, const char *info,
                         const StrandsReadOptions *options, StrandsReport *report)
 {
@@ -386,7 +386,7 @@ static void formats_have_their_own_units_and_axes(void **state)
         {LONG, {.unit = 0}, 400, 0.001f, true, true, true},
         {"", {.up = UP_Y}, 40, 0.01f, false, true, false},
         {"", {.unit = 1}, 40, 1, true, false, true},
-        {"Tractrix", {.unit = 0}, 0.5f, 1, false, true, false}, // before 0.2
+        {"Tractrix", {.unit = 0}, 0.5f, 1, false, true, false}, // written before version 0.2
         {"Tractrix: unit 0.25 m, y up", {.unit = 0}, 40, 0.25f, false, false, false},
         {"Tractrix: unit 0.01 m, z up", {.unit = 0}, 4, 0.01f, true, false, false},
         {"Tractrix: unit nan m, z up", {.unit = 0}, 40, 0.01f, true, true, false},
@@ -404,11 +404,11 @@ static void formats_have_their_own_units_and_axes(void **state)
         assert_true(fabsf(up - (CASES[i].up_z ? expected : 0)) < 1e-6f * expected);
         strands_destroy(&strands);
     }
-    // A large animal in TressFX: a box of 500 units, strands of 400.
+    // A large animal in TressFX: a box of 500 units, strands of 400 units.
     Strands strands;
     StrandsReport report;
     struct {
-        uint32_t magic[2]; // of no format: USC-HairSalon's counts
+        uint32_t magic[2]; // no signature: USC-HairSalon's counts
         float position[2][3];
     } big = {{1, 2}, {{0, 0, 0}, {300, 400, 0}}};
     assert_int_equal(reading_copy(&strands, &big, sizeof big, NULL, &report, NULL), RESULT_OK);
@@ -420,7 +420,7 @@ static void formats_have_their_own_units_and_axes(void **state)
     strands_destroy(&strands);
 }
 
-// Fur of 3 cm on an animal of 3 m is in centimetres; by the box alone it would be in millimetres.
+// Fur of 3 cm on an animal of 3 m is in centimetres; the box alone would suggest millimetres.
 static void the_strands_length_counts_as_the_box_does(void **state)
 {
     (void)state;
@@ -449,7 +449,7 @@ static void the_guess_is_one_line(void **state)
          "a.hair: guessed a unit of 0.01 m and z up: --unit and --up say otherwise\n"},
         {{.unit_used = 0.001f, .unit_guessed = true}, "a.hair: guessed a unit of 0.001 m: --unit "},
         {{.unit_used = 1, .up_guessed = true, .up_z = true}, "a.hair: guessed z up: --up say"},
-        {{.unit_used = 1, .unit_guessed = true, .up_guessed = true}, ""}, // changes nothing
+        {{.unit_used = 1, .unit_guessed = true, .up_guessed = true}, ""}, // stays silent
         {{.unit_used = 1}, ""},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Binary hair files, whole, cut off and damaged.
+// Binary hair files: complete, truncated and damaged.
 #include "strands/formats/format.h"
 #include "support/reading.h"
 #include "support/temporary.h"
@@ -70,7 +70,7 @@ static void check_truncations(const uint8_t *data, size_t size)
         }
         strands_destroy(&strands);
     }
-    // Only the last few digits of a text may be missed.
+    // Only the last few digits of a text may be missing unnoticed.
     assert_true(refused >= (int)size - 12);
 }
 
@@ -94,8 +94,8 @@ static void every_truncation_is_read_or_refused(void **state)
     check_truncations((const uint8_t *)salon, 4 * 15);
 }
 
-// Every byte of a header set to every value, and every 32-bit word to large ones: nothing may crash
-// or ask for more memory than the file's size warrants.
+// Sets every byte of a header to every value, and every 32-bit word to large values: the reader
+// must not crash or use more memory than the file's size justifies.
 static void any_damage_to_a_header_is_survived(void **state)
 {
     static const struct {
@@ -168,7 +168,7 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
     }
 }
 
-// bothEndsImmovable is one byte; the three behind it may hold anything.
+// bothEndsImmovable is one byte; the three bytes behind it may have any value.
 static void padding_behind_a_bool_does_not_count(void **state)
 {
     for (int at = 16; at < 20; ++at) {
@@ -184,7 +184,7 @@ static void padding_behind_a_bool_does_not_count(void **state)
     }
 }
 
-// Each vertex has its own colour and opacity, as they were written.
+// Each vertex keeps its colour and opacity.
 static void hair_files_keep_every_colour(void **state)
 {
     Bytes bytes = make_file(state, FORMAT_HAIR);
@@ -199,13 +199,13 @@ static void hair_files_keep_every_colour(void **state)
     bytes_destroy(&bytes);
 }
 
-// A unit below 0 m is none.
+// A negative unit is ignored.
 static void a_unit_without_length_is_ignored(void **state)
 {
     Bytes bytes = make_file(state, FORMAT_HAIR);
     char *unit = strstr((char *)bytes.data + 40, "unit 1 m");
     assert_non_null(unit);
-    unit[4] = '-'; // "unit-1 m", which reads as -1
+    unit[4] = '-'; // "unit-1 m", which is parsed as -1
     Strands strands;
     StrandsReport report;
     assert_int_equal(

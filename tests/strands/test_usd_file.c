@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// USD's text form. The expected files are written out: such files have been read by TinyUSDZ and by
-// the parser of three.js, with the same numbers.
+// USD's text form. The expected files are given in full: TinyUSDZ and the parser of three.js have
+// read such files with equal numbers.
 #include "strands/formats/format.h"
 #include "strands/formats/usd_write.h"
 #include "strands/strands_read.h"
@@ -76,7 +76,7 @@ static void frames_are_time_samples(void **state)
     strands.position[0][2] = 8;
     assert_int_equal(usd_writer_add(&writer, 9, (const float(*)[3])strands.position, NULL),
                      RESULT_OK);
-    assert_false(temporary_has(state, "x.usda")); // not before it is whole
+    assert_false(temporary_has(state, "x.usda")); // not before it is complete
     assert_int_equal(usd_writer_finish(&writer, NULL), RESULT_OK);
     assert_content(
         state, "x.usda",
@@ -103,7 +103,7 @@ static void frames_are_time_samples(void **state)
     strands_destroy(&strands);
 }
 
-// The uneven strands with all that strands can have.
+// The uneven strands with all attributes.
 static void make_rich(Strands *made)
 {
     Strands strands;
@@ -168,7 +168,8 @@ static Strands read_text(const char *text, size_t size, StrandsReport *report, R
                          Error *error)
 {
     Strands strands;
-    Bytes bytes = {malloc(size + 1), size}; // of its exact size, for sanitizers
+    // of exact size, so that the sanitizer sees reads past the end
+    Bytes bytes = {malloc(size + 1), size};
     memcpy(bytes.data, text, size);
     bytes.data[size] = 0;
     Result result = strands_read_bytes(&strands, "FILE", &bytes, NULL, report, error);
@@ -186,7 +187,7 @@ static void what_is_written_is_read_to_the_bit(void **state)
     strands.follower_radius = 0.0123f;
     strands.both_ends_fixed = true;
     strands.color[2][3] = 0.25f;
-    strands.mobility[1] = 1; // and nothing else, which isn't usual
+    strands.mobility[1] = 1; // an unusual mobility on its own
     strands.strand_thickness[1] = 0.1f;
     strands.vertex_thickness[3] = 1e-4f;
     const char *path = temporary_path(state, "x.usda");
@@ -207,7 +208,7 @@ static void what_is_written_is_read_to_the_bit(void **state)
     strands_destroy(&back);
 }
 
-// As other programs write them: comments, parents, other prims, several curves, frames, z up.
+// As other programs write files: comments, parents, other prims, several curves, frames, z up.
 static const char FOREIGN[] =
     "#usda 1.0\n(\n    \"a (comment) = {\"\n    doc = \"\"\"three\n \"quotes\" \"\"\"\n"
     "    subLayers = [\n    ]\n    comment = @a(b.usd@\n    metersPerUnit = 0.1\n    upAxis = "
@@ -248,7 +249,7 @@ static void curves_of_other_programs_are_read(void **state)
     "#usda 1.0\ndef BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"                       \
     "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more "}\n"
 
-// Strings in three quotes hold lines and quotes, whatever they look like.
+// Strings in triple quotes may contain lines and quotes of any form.
 static void long_strings_are_skipped_whole(void **state)
 {
     (void)state;
@@ -316,7 +317,7 @@ static void what_would_give_other_hair_is_refused_with_its_line(void **state)
     }
 }
 
-// Reads strands in metres and compares the vertices, x y z each.
+// Reads strands in metres and compares the vertices, three coordinates each.
 static void check_vertices(const char *text, uint32_t strand_count, const float *wanted,
                            uint32_t count)
 {
@@ -337,8 +338,8 @@ static void check_vertices(const char *text, uint32_t strand_count, const float 
     METRIC "def BasisCurves \"x\"\n{\n" more "int[] curveVertexCounts = " counts "\n"              \
            "point3f[] points = " points "\n}\n"
 
-// By hand: a bezier at t = 0, 1/4, ... 1; p(1/2) = (a + 3 b + 3 c + d) / 8. Splines through points
-// of a line at equal distances are that line, pinned ones up to its ends.
+// Expected values by hand: a Bezier curve at t = 0, 1/4, ... 1; p(1/2) = (a + 3 b + 3 c + d) / 8.
+// Splines through evenly spaced points of a line are that line; pinned splines reach its ends.
 static void cubic_curves_become_points_on_them(void **state)
 {
     (void)state;
@@ -355,7 +356,8 @@ static void cubic_curves_become_points_on_them(void **state)
     check_vertices(CUBIC(SPLINE("catmullRom", ""), "[4]", LINE), 1, inner, 3);
     check_vertices(CUBIC(SPLINE("bspline", PINNED), "[4]", LINE), 1, whole, 7);
     check_vertices(CUBIC(SPLINE("catmullRom", PINNED), "[4]", LINE), 1, whole, 7);
-    // B-spline: (a + 4 b + c) / 6 at a joint; Catmull-Rom: (-a + 9 b + 9 c - d) / 16 between two.
+    // B-spline: (a + 4 b + c) / 6 at a joint; Catmull-Rom: (-a + 9 b + 9 c - d) / 16 half-way
+    // between two points.
     static const float bent[] = {0, 1, 0, 0.5f, 1.25f - 0.125f, 0, 1, 1, 0};
     check_vertices(
         CUBIC(SPLINE("catmullRom", ""), "[4]", "[(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]"), 1,
