@@ -1,48 +1,51 @@
 // SPDX-License-Identifier: MIT
-// The bounds that strands of stress_case.h keep: what a strand may do, whatever its solver, and
-// what each solver says of itself.
+// The bounds that strands of stress_case.h must keep: bounds that hold for any solver, and bounds
+// that each solver promises.
 //
-// Energy. Let E be the mean over a strand's particles, mass 1, of v^2/2 - g.(x - s), seen from the
-// root without turning with it; s is where a particle was at the start, at rest in the style. The
-// springs of the style and of links store what is never negative, and nothing at the start. So
+// Energy. Let E be the mean of v^2/2 - g.(x - s) over a strand's particles of mass 1, in
+// coordinates that move with the root but do not rotate; s is the particle's start, at rest in the
+// style. The springs of style and links store non-negative energy, and none at the start. So
 //     dE/dt <= V |a| + c V (W - V) + P
-// with the root's acceleration a, the speed W of the air as seen from the root, drag c, the root
-// mean square speed V, and the power P by which a turning style stretches its springs. As
-// g.(x - s) <= B = mean(|g| l - g.s) at the distance l along the strand, V^2/2 <= E + B =: S^2/2.
-//   - A groom at rest (--rest groom) holds the gravity of time 0 and turns it with the head: g is
-//   what
-//     is felt beyond that. Where it changes, E + B grows by at most 2 |dg| l, S^2 by 4 |dg| l.
-//     Strands of segments (split) feel all gravity, and hang straight down at the start.
-//   - Nothing but gravity: S^2 stays at 2B. What falls cannot be faster than its fall.
-//   - The root's motion: dS/dt <= |a|. S grows by no more than all changes of the root's velocity.
-//   - Wind: S^2 grows by c W^2/2 per second at most, and not at all where V > W; the energy beside
-//     V^2/2 varies by 4 |g| L/2 at most, so not above S^2 = W^2 + 4 |g| L.
-//   - A style of stiffness k that is turned by an angle does (2 l)(l) k per radian: S^2 grows by
-//     4 k L^2 per radian; angular springs b (m/s^2) give 2 pi b L.
-//   - What the head carries beside the root, or takes along rigidly, has the speed of its turning.
-//   - Vertex 1, where the head carries it: nothing bounds what the head does to lift it, by at most
-//     |g| l_1 + g.s_1, and all that hangs from it as much. Seen from there, the bound above holds
-//     with the changes of its velocity for those of the root's: those about the root, w l_1 by
-//     which a turn at the rate w begins or ends, and w l_1 per radian, are added.
-// Taken together in any order, S <= sqrt(2B + wind + style) + kicks, for sqrt((S + d)^2 + w) <=
+// with the root's acceleration a, the air's speed W relative to the root, drag c, the root mean
+// square speed V, and the power P by which a rotating style stretches its springs. As g.(x - s) <=
+// B = mean(|g| l - g.s) at the distance l along the strand, V^2/2 <= E + B =: S^2/2.
+//   - A groom at rest (--rest groom) balances the gravity of time 0 and turns that with the head:
+//     g is the difference. Where g changes, E + B grows by at most 2 |dg| l, and S^2 by 4 |dg| l.
+//     Strands of segments (split) feel all gravity and hang straight down at the start.
+//   - Gravity alone: S^2 stays 2B. Nothing can be faster than its fall.
+//   - The root's motion: dS/dt <= |a|. S grows by at most the sum of all changes of the root's
+//     velocity.
+//   - Wind: S^2 grows by at most c W^2/2 per second, and not at all while V > W. The energy other
+//     than V^2/2 varies by at most 4 |g| L/2, so that S^2 <= W^2 + 4 |g| L.
+//   - Rotating a style of stiffness k does the work (2 l)(l) k per radian: S^2 grows by 4 k L^2 per
+//     radian; angular springs b (m/s^2) give 2 pi b L.
+//   - Parts other than the root that the head carries or takes along rigidly have the speed of its
+//     rotation.
+//   - Vertex 1, if the head carries it: the head may lift it with any force, which adds at most
+//     |g| l_1 + g.s_1 for it, and as much for all that hangs from it. In coordinates that move with
+//     vertex 1, the bound above holds with the changes of its velocity instead of the root's: its
+//     velocity about the root, w l_1, where a rotation at the rate w starts or ends, and w l_1 per
+//     radian.
+// In any order, S <= sqrt(2B + wind + style) + kicks together, since sqrt((S + d)^2 + w) <=
 // sqrt(S^2 + w) + d. All terms scale alike, so the bound does not depend on units. It needs no
-// solver's own quantities: v is how far what is drawn goes in a step, by the step.
+// quantities of the solver: v is the distance that the drawn positions move in a step, divided by
+// the step.
 //
-// Rounding. Positions are float32, off by 2^-24 of their size X: v is off by 2^-23 X/dt, and a
-// solver that takes velocities from positions hands that on: in N steps, small ones counted, as far
-// as a random walk. Directions are off by the rounding over the shortest segment: what stiff bends
-// store by that is there from the start.
+// Rounding. Positions are float32 and err by 2^-24 of their size X, so that v errs by 2^-23 X/dt. A
+// solver that computes velocities from positions accumulates that: over N steps, including
+// sub-steps, like a random walk. Directions err by the rounding relative to the shortest segment,
+// and stiff bends store the energy of that error from the start.
 //
-// Rest. With the head at rest and steady forces, drag takes all energy. A swing dies like e^{-c
-// t/2}, what is overdamped creeps like e^{-t g/(c L)}; where both have passed for 30 times, the
-// strand must lie still.
+// Rest. With the head at rest and steady forces, drag takes all energy. Oscillations decay like
+// e^{-c t/2}, and overdamped motion like e^{-t g/(c L)}. After 30 times both time constants, the
+// strand must be still.
 //
-// Flutter. Segments of tressfx follow the one before, which takes no reaction. Under a weight that
-// presses such a strand together it flutters as a column does under a load that follows its end
-// (Beck 1952), above some load over stiffness: with n particles of weight g, links l and a joint's
-// W^2 (solver_tressfx.c), F = n g/(l W^2), times the share of its weight that presses, u =
-// -mean(g.s)/ mean(|g| l). Beyond F u = 0.5 neither energy nor rest are looked at, and the tool
-// counts such strands. Smallest number at which one was found to flutter: 0.52.
+// Flutter. In tressfx, a segment follows the previous one without acting back on it. Under a weight
+// that compresses such a strand, it flutters like a column under a load that follows its end (Beck
+// 1952), if load over stiffness is large enough. With n particles of weight g, links l and a
+// joint's W^2 (solver_tressfx.c), that ratio is F = n g/(l W^2), times the share of the weight that
+// compresses, u = -mean(g.s)/ mean(|g| l). If F u > 0.5, neither energy nor rest is checked, and
+// the tool counts such strands. The smallest value at which a strand fluttered is 0.52.
 #pragma once
 
 #include "bench/stress_case.h"
@@ -50,49 +53,50 @@
 #include "glsl/bench/stress_params.h"
 
 typedef struct StressBound {
-    double small_steps, steps; // that the solver makes of one, at most; so far
-    double step_s;             // of the solver's own time
+    double small_steps, steps; // largest number of sub-steps per step; number of steps so far
+    double step_s;             // duration of a sub-step
     double drag, wind, length;
-    double g;                      // m/s^2: most that is felt of gravity
-    double share, held;            // of gravity: that is felt, and that the groom holds of it
-    bool hangs;                    // the strand is simulated hanging straight down
-    double felt[3], felt_first[3]; // m/s^2: gravity, in the last step and the first
-    double changes, strongest;     // m/s^2: of what is felt so far, all changes and the most
-    double stiffness;              // added to S^2 for each radian that the head turns, m^2/s^2
-    double kicks, blown, cap;      // m/s; m^2/s^2
-    double turning;                // m/s: of a strand that goes rigidly with the head
-    double turned;                 // m^2/s^2
-    bool carries;                  // vertex 1 is the head's
-    double rate, spun;             // 1/s: the head's turning; its changes, and its own direction's
-    double warp;                   // 1/s: the strand's own turning
+    double g;           // m/s^2: the strongest gravity felt
+    double share, held; // shares of gravity: that the strand feels, and that the groom balances
+    bool hangs;         // the strand is simulated as hanging straight down
+    double felt[3], felt_first[3]; // m/s^2: gravity felt in the last step and the first
+    double changes, strongest; // m/s^2: sum of changes of the gravity felt so far, and its maximum
+    double stiffness;          // added to S^2 per radian of the head's rotation, m^2/s^2
+    double kicks, blown, cap;  // m/s; m^2/s^2
+    double turning;            // m/s: speed of a strand that moves rigidly with the head
+    double turned;             // m^2/s^2
+    bool carries;              // the head carries vertex 1
+    double rate, spun; // 1/s: the head's rate of rotation; changes of that rate and of its axis
+    double warp;       // 1/s: the strand's rotation with the deforming mesh
     double root_velocity[3];
-    double rise;     // share by which the solver lets energy rise; < 0: no bound
-    double jerk;     // times the root's changes of velocity in the last step
-    double changed;  // m/s: the last of them
-    double bends;    // m^2/s^2: what bends by a radian would store, 16 times: twice the energy, and
-                     // both segments' directions off by as much again
-    double resolved; // roundings that segments must be long for energy to be looked at
-    double length_error;  // of segments; 0: it does not keep them
-    double rest_move;     // m a step, at the end; 0: it need not rest
-    double rest_shortest; // m: nor with a segment as short as this
-    double flutter;       // F; 0: no such strands
-    double rest_resolved; // roundings: nor as this
+    double rise;    // share by which the solver may let energy grow; < 0: no bound
+    double jerk;    // factor of the root's changes of velocity in the last step
+    double changed; // m/s: the last change
+    double bends;   // m^2/s^2: 16 times what bends by one radian would store: twice the energy, and
+                    // directions of both segments that err by twice as much
+    double resolved;      // energy is checked only for segments longer than this many roundings
+    double length_error;  // bound of segments; 0: the solver does not keep lengths
+    double rest_move;     // m per step, at the end; 0: need not rest
+    double rest_shortest; // m: need not rest if a segment is as short as this
+    double flutter;       // F; 0: the solver has no such strands
+    double rest_resolved; // roundings: need not rest if a segment is shorter than this
 } StressBound;
 
-// `params` are the case's. `steps` that there will be, the head at rest in the second half of them.
+// `params` are the case's. `steps`: total number of steps; the head rests in the second half.
 StressBound stress_bound_create(const StressCase *stress, const SectionParams *params, int steps);
 
-// A step: the root has gone by `moved` (m), the head has turned by `angle` (rad), in all from time
-// 0 on by `turned` about z; gravity is `gravity` (m/s^2).
+// A step: the root's displacement `moved` (m), the head's rotation `angle` (rad) in this step and
+// `turned` about z since time 0, and `gravity` (m/s^2).
 typedef struct StressMove {
     double moved[3], angle, turned, gravity[3];
-    double warped[4]; // the strand's own rotation from time 0 on in the head's frame, a quaternion
-                      // x y z w; all 0: none
-    double warp;      // rad, by which that has changed in the step
+    double warped[4]; // the strand's rotation since time 0 in the head's frame, a quaternion x y z
+                      // w; all 0: none
+    double warp;      // rad, change of that rotation in the step
 } StressMove;
 
 // Takes a step into account.
 void stress_bound_step(StressBound *bound, const StressMove *move);
 
-// Fills in what stress.comp compares with, but for steps and counts. `last`: the run's last step.
+// Fills in the bounds that stress.comp compares with, except steps and counts. `last`: the run's
+// last step.
 void stress_bound_fill(const StressBound *bound, bool last, StressParams *params);

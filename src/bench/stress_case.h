@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What `tractrix-bench stress` tries: a strand under circumstances, as numbers with names. A case
-// differs from the plain one (a straight strand of 16 vertices that falls on a resting head) in
-// some of them; these are its text, "dt=0.5 wind=1e4 shape=curl". Behind the circumstances come the
-// parameters of the case's solver, with the names, owners, defaults and ranges of params.def.
+// Cases of `tractrix-bench stress`: a strand and its circumstances as named numbers. The plain case
+// is a straight strand of 16 vertices that falls on a resting head. A case's text lists its
+// differences from that: "dt=0.5 wind=1e4 shape=curl". After the circumstances come the parameters
+// of the case's solver, with names, owners, defaults and ranges as in params.def.
 //
-// Gravity at time 0, under which a groom is at rest (--rest groom), is rest_share times what it is
-// from then on.
-//
-// Most are the same for all strands that are stepped together, a set; shape, tilt and shape_seed
-// are each strand's own.
+// Gravity at time 0, with which a groom is in balance (--rest groom), is rest_share times the later
+// gravity.
 #pragma once
 
 #include "base/params.h"
@@ -18,9 +15,8 @@
 #include <stddef.h>
 
 // STRESS_FIELD(name, plain, low, high, spread, likely)
-// spread  how random values lie: EVEN; LOG: evenly in the logarithm; ZERO: as LOG, but 0 in one of
-//         four; WHOLE: evenly among whole numbers
-// likely  how often a random case differs in it
+// spread  distribution of random values: EVEN; LOG: even in the logarithm; ZERO: as LOG, but 0 in
+//         one of four; WHOLE: even among integers
 #define STRESS_FIELDS(STRESS_FIELD)                                                                \
     STRESS_FIELD(n, 16, 2, 64, WHOLE, 0)              /* random: 2, 3, 16 or 64 */                 \
     STRESS_FIELD(dt, 1.0 / 60, 1e-6, 1, LOG, 0.6)     /* s */                                      \
@@ -54,54 +50,55 @@ enum StressField {
     STRESS_MOST_FIELDS = 64
 };
 
-// Shapes, all of the case's length (but for the shortest segments that reading leaves,
-// strands_read.h, which none goes below).
+// Shapes of the case's length, in which no segment is shorter than the shortest that reading keeps
+// (strands_read.h).
 enum StressShape {
     STRESS_STRAIGHT,    // collinear
-    STRESS_CURL,        // a helix of three turns about the straight one
-    STRESS_ZIGZAG,      // each segment opposite to the one before
-    STRESS_WALK,        // every segment in a direction of its own
-    STRESS_UNEVEN,      // straight, of segments whose lengths differ by up to 1e4
-    STRESS_NEARLY_ZERO, // walk, but every other segment is the shortest that reading leaves
+    STRESS_CURL,        // a helix of three turns around the straight shape
+    STRESS_ZIGZAG,      // each segment in the opposite direction of the previous one
+    STRESS_WALK,        // every segment in a random direction
+    STRESS_UNEVEN,      // straight, with segments whose lengths differ by up to 1e4
+    STRESS_NEARLY_ZERO, // walk, but every second segment is the shortest that reading keeps
 };
 
 typedef struct StressCase {
-    const char *algo, *variant; // variant: "" for a solver without
+    const char *algo, *variant; // variant: "" for a solver without variants
     double value[STRESS_MOST_FIELDS];
 } StressCase;
 
 // The plain case of a solver.
 StressCase stress_case_plain(const char *algo, const char *variant);
 
-// A random set: the circumstances of all its strands; `vertices` of STRESS_VERTICES in turn.
+// A random set: the circumstances shared by its strands; vertex counts take turns.
 enum {
     STRESS_VERTEX_COUNTS = 4,
-    STRESS_MOST_SMALL_STEPS = 40, // that random cases give to the spring
+    STRESS_MOST_SMALL_STEPS = 40, // sub-steps per step in random cases of spring
 };
 extern const int STRESS_VERTICES[STRESS_VERTEX_COUNTS];
 StressCase stress_case_random(const char *algo, const char *variant, int vertices, Random *random);
 
-// The set with a strand of its own, of number `strand`.
+// A case of the set with individual fields for strand `strand`.
 StressCase stress_case_random_strand(const StressCase *set, int strand, Random *random);
 
-// Reads the output of stress_case_write, words in any order, into a plain case. RESULT_USAGE
-// naming the word.
+// Reads the output of stress_case_write, with words in any order, into a plain case. RESULT_USAGE
+// names an invalid word.
 Result stress_case_read(StressCase *stress, const char *text, Error *error);
 
-// How it differs from the plain case; "plain" if it does not. Cut at `size`. Numbers are rounded to
-// five digits beforehand, by whoever makes them.
+// Writes the differences from the plain case; "plain" if there are none. Truncated to `size`.
+// Callers must have rounded numbers to five digits.
 void stress_case_write(const StressCase *stress, char *text, size_t size);
 
-// The next simpler case to try: number `move` of them, from 0 on; false when there are no more.
-// `simpler` may equal the case. Moves go from the boldest to the most timid of each field: back to
-// the plain value, half the way there (in the logarithm where it has one); fewer vertices.
+// A simpler case to try, number `move` from 0 on; false if there are no more. `simpler` may equal
+// the case. For each field, the largest simplification comes first: the plain value, then half-way
+// to it (in the logarithm if possible); fewer vertices.
 bool stress_case_simplify(const StressCase *stress, int move, StressCase *simpler);
 
 // The solver's parameters; free with params_destroy_section.
 Result stress_case_params(const StressCase *stress, SectionParams *params, Error *error);
 
-// Where a point of the mesh to which the strand is bound is after `time` seconds of warping: `rest`
-// and `place`, metres in the head's frame. Three waves, which are 0 at time 0.
+// The position, after `time` seconds of deformation, of a point of the mesh to which the strand is
+// bound; `rest` and `place` in m in the head's frame. The sum of three waves, which are 0 at time
+// 0.
 void stress_case_warp(const StressCase *stress, double time, const double rest[3], double place[3]);
 
 // The strand: `points` [n], metres in the head's frame.

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Whether others kept this process from its processors while a time was taken.
+// How long this process had to wait for processors while a time was measured.
 #pragma once
 
-// Times of all threads of this process that live, ms: running, and ready but without a processor.
+// Total times of all living threads of this process, ms: running, and ready but without a
+// processor.
 typedef struct Waited {
     double ran, waited;
 } Waited;
 
-// Now; zeros where the system does not tell (/proc/self/task/*/schedstat).
+// The current times; zeros if the system does not report them (/proc/self/task/*/schedstat).
 Waited waited_now(void);
 
-// The share of its time since `before` that the process waited for a processor, 0..1; 0 where the
-// system does not tell.
+// The share of the time since `before` during which the process waited for a processor, 0..1; 0 if
+// the system does not report it.
 double waited_since(Waited before);
 
-// A time that was taken while the share was greater says nothing about a bound.
+// If the share was greater, a measured time says nothing about a bound.
 #define WAITED_MOST 0.05
