@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A simulation's frames in a file: drawn positions of the guides and the head's pose, bit for bit
-// (docs/cache.md). One process writes, any number reads, any frame without the others.
+// A cache file stores a simulation's frames bit for bit: drawn positions of the guides and the
+// head's pose (docs/cache.md). One process writes it; any number of processes read it, in any order
+// of frames.
 #pragma once
 
 #include "base/chunk.h"
@@ -8,30 +9,30 @@
 
 #include <stdbool.h>
 
-// --- The file (docs/cache.md), without the scene that it is of: frames of all guides, and which
-// strands of which files they are.
+// --- The file (docs/cache.md) without its scene: frames of all guides, and the files and numbers
+// of their strands.
 
 #define CACHE_MAGIC   "TRXCACHE"
 #define CACHE_TRAILER "TRXINDEX"
 
-// Of positions in a frame; the head's pose stands before them.
+// Of the positions in a frame, which follow the head's pose.
 enum { CACHE_HEAD_FLOATS = 7, CACHE_TRAILER_BYTES = 16, CACHE_STRIDE = 3 };
 
 typedef struct CacheFile {
     ChunkFile file;
     Bytes scene;       // JSON text
-    Bytes hair;        // as docs/cache.md has it
+    Bytes hair;        // see docs/cache.md
     uint64_t *offsets; // [frame_count]
     uint32_t frame_count, room;
-    bool finished; // it has its index: no frame is missing
-    Error end;     // why there are no more, if that is not the file's proper end
+    bool finished; // has its index: no frame is missing
+    Error end;     // why there are no more frames, if the file is not finished
 } CacheFile;
 
-// Whether the file begins like a cache; no if there is none. RESULT_BAD_INPUT if it can't be opened
-// or read.
+// Whether the file begins like a cache; false if it does not exist. RESULT_BAD_INPUT if it can't be
+// opened or read.
 Result cache_file_matches(const char *path, bool *matches, Error *error);
 
-// Whether it is a cache that ends before its first frame could begin: its run was stopped at once.
+// Whether it is a cache that ends before its first frame, because its run was stopped early.
 bool cache_file_is_stub(const char *path);
 
 // Opens a cache, finished or not. RESULT_BAD_INPUT with one line about the file's defect,
@@ -43,18 +44,18 @@ void cache_file_close(CacheFile *cache);
 // complete frames and where and why they end.
 Result cache_file_check(const CacheFile *cache, int last, Error *error);
 
-// Reads all frames and compares their checksums. From the first damaged one on, frames no longer
-// count: `end` says which and why. False when one was damaged.
+// Reads all frames and compares their checksums. Frames from the first damaged one on no longer
+// count, and `end` names it and the reason. False if a frame was damaged.
 bool cache_file_verify(CacheFile *cache);
 
 // The head's rotation (unit quaternion x, y, z, w) and translation, and the positions of
-// `vertex_count` vertices in the order of `hair`. RESULT_BAD_INPUT with frame and place if it is
+// `vertex_count` vertices in the order of `hair`. RESULT_BAD_INPUT with frame and position if it is
 // missing, damaged or not finite.
 Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS],
                        float (*positions)[3], uint64_t vertex_count, Error *error);
 
-// --- Writing. After a failure, or instead of cache_writer_finish, the file keeps the frames that
-// are in it.
+// --- Writing. After a failure, or without cache_writer_finish, the file keeps the frames written
+// so far.
 
 typedef struct CacheWriter {
     char *path;
@@ -64,26 +65,26 @@ typedef struct CacheWriter {
     uint32_t frame_count, room;
     float (*positions)[3]; // of all guides; NULL between large frames
     uint8_t *payload;
-    int reason;      // errno of the first write that failed, 0: none has
-    double write_ms; // spent so far, with packing
+    int reason;      // errno of the first failed write, 0: none failed
+    double write_ms; // total time, including packing
 } CacheWriter;
 
-// Makes the file anew, or empties one that is a cache already. RESULT_FAILED with path and reason,
-// also for a file of another kind, which stays as it is, and if another process is writing it.
+// Creates the file, or empties an existing cache. RESULT_FAILED with path and reason, also for a
+// file of another kind, which is not changed, and if another process is writing it.
 Result cache_writer_open(CacheWriter *writer, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error);
 
 struct CacheReader;
 
-// Goes on behind the first `frame_count` frames (>= 1) of the file that `reader` has open; what
-// follows them is cut off. Errors as above.
+// Continues after the first `frame_count` frames (>= 1) of the file that `reader` has open, and
+// removes what follows them. Errors as above.
 Result cache_writer_continue(CacheWriter *writer, const struct CacheReader *reader,
                              uint32_t frame_count, const Simulation *simulation, Error *error);
 
 // Appends the frame that the simulation has posed. RESULT_FAILED with path and reason.
 Result cache_writer_add(CacheWriter *writer, const Simulation *simulation, Error *error);
 
-// Appends the index, which a reader can do without, and waits for the disk.
+// Appends the index, which readers can do without, and waits until everything is on disk.
 Result cache_writer_finish(CacheWriter *writer, Error *error);
 void cache_writer_close(CacheWriter *writer);
 
@@ -95,8 +96,8 @@ typedef struct CacheReader {
     uint64_t particle_count;
 } CacheReader;
 
-// Opens a cache of this very simulation, finished or not. RESULT_BAD_INPUT with one line about what
-// is wrong with the file, or in which value the scene differs.
+// Opens a cache of exactly this simulation, finished or not. RESULT_BAD_INPUT with one line about
+// the file's defect, or the value in which the scene differs.
 Result cache_reader_open(CacheReader *reader, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error);
 void cache_reader_close(CacheReader *reader);
@@ -105,6 +106,6 @@ void cache_reader_close(CacheReader *reader);
 // complete frames and where and why they end.
 Result cache_reader_check(const CacheReader *reader, int last, Error *error);
 
-// Shows the frame: simulation_show. RESULT_BAD_INPUT with frame and place if it is missing or
+// Shows the frame by simulation_show. RESULT_BAD_INPUT with frame and position if it is missing or
 // damaged.
 Result cache_reader_show(CacheReader *reader, Simulation *simulation, int frame, Error *error);

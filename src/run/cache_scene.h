@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a simulation depends on, as caches and saved states record it, so that none is used with
+// What a simulation depends on. Caches and saved states record it so that they are not used with
 // another scene. Formats: docs/cache.md.
 #pragma once
 
@@ -7,17 +7,16 @@
 #include "sim/simulation.h"
 
 // The scene's values that move the guides, as JSON: those of the groups Simulation and Forces, the
-// head, keyed forces, colliders, a checksum of the mesh that hair collides with, who made it. Not
-// files (their
-// content is recorded below), the camera, looks, followers and the length of the sequence.
-// RESULT_FAILED when memory is short.
+// head, keyed forces, colliders, a checksum of the mesh that hair collides with, and the program
+// that made it. Not files (their contents are recorded below), the camera, looks, followers and the
+// number of frames. RESULT_FAILED when memory is short.
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error);
 
-// Which program and driver simulated: the text's "made_by"; "unknown" in caches of early versions.
-// To be freed; NULL when memory is short. It counts for nothing in the comparison below.
+// The program and driver that simulated: "made_by" in the text, or "unknown" in caches of early
+// versions. To be freed; NULL when memory is short. The comparison below ignores it.
 char *cache_scene_maker(const Bytes *text);
 
-// The same of this process, whose context is current. Valid until the next call.
+// The same for this process, whose context is current. Valid until the next call.
 const char *cache_scene_own_maker(void);
 
 // Compares such a text with the scene: RESULT_BAD_INPUT with `path`, the first key that differs,
@@ -25,9 +24,9 @@ const char *cache_scene_own_maker(void);
 Result cache_scene_compare(const Bytes *text, const Simulation *simulation, const char *path,
                            Error *error);
 
-// Of each section: strands, a checksum of their vertices as they were loaded, runs of equal vertex
-// counts, and the strands' numbers in their file, in the order in which frames hold them. Free with
-// bytes_destroy. RESULT_FAILED when memory is short.
+// For each section: number of strands, a checksum of their vertices as loaded, runs of equal vertex
+// counts, and the strands' numbers in their file, in the order of frames. Free with bytes_destroy.
+// RESULT_FAILED when memory is short.
 Result cache_scene_describe_hair(Bytes *bytes, const Simulation *simulation, const Strands *strands,
                                  Error *error);
 

@@ -10,7 +10,7 @@
 
 // Arrays are owned; a zeroed struct is empty.
 typedef struct SceneLook {
-    CurvesLook curves; // points into the rest
+    CurvesLook curves; // points into the other members
     float *width;
     float (*color)[4];
 } SceneLook;
@@ -19,23 +19,23 @@ typedef struct Exporter {
     Target target;
     FormatKind kind;
     const Simulation *simulation;
-    Strands strands; // of all sections, one behind the other
-    bool followers;  // they are among them, behind the guides of their section
-    uint32_t lost;   // features (STRANDS_HAS_...) of the sections that the files do not have
-    SceneLook look;  // of formats that have one, like the rest
+    Strands strands; // of all sections, one after the other
+    bool followers;  // `strands` contains followers, after the guides of their section
+    uint32_t lost;   // features (STRANDS_HAS_...) of the sections that the files lack
+    SceneLook look;  // for formats that store looks, like the members below
     CurvesOptions options;
     FramesFile frames; // open if one file takes all frames
-    int files;         // written so far
+    int files;         // number of files written
 } Exporter;
 
-// `text`: as format_target takes it. Files have the guides
-// (with export_followers: and the followers) of all sections in the order in which they were read,
-// in metres with y up, and of texture coordinates, colours and so on what all sections have; of
-// several sections each is a group. USD and Alembic also have the sections' widths and colours, and
-// all frames in one file, as .npz does, which keeps them in memory until the end. `frame_count`:
-// how many will come; a name without a number takes one otherwise. All arguments outlive the
-// exporter. RESULT_USAGE for the name, RESULT_FAILED if no file can be made there or memory is
-// short. A zeroed struct may be destroyed; destroying discards a file that is not finished.
+// `text`: as for format_target. Files contain the guides (with export_followers: also the
+// followers) of all sections in the order in which they were read, in metres with y up, with the
+// texture coordinates, colours and other attributes that all sections have; several sections become
+// groups. USD and Alembic files also contain the sections' widths and colours. They hold all frames
+// in one file, as does .npz, which keeps them in memory until the end. `frame_count`: number of
+// frames to come; a name without a number accepts one frame otherwise. All arguments must outlive
+// the exporter. RESULT_USAGE for the name, RESULT_FAILED if the file can't be created or memory is
+// short. A zeroed struct may be destroyed; destroying discards an unfinished file.
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error);
 void exporter_destroy(Exporter *exporter);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws what a simulation has: the one way from a scene to pixels.
+// Draws a simulation's hair: the only way from a scene to pixels.
 #pragma once
 
 #include "draw/renderer.h"
@@ -18,31 +18,30 @@ typedef struct Images {
     const Gpu *gpu;
     Renderer renderer;
     Renderer *layers;  // [EXR_LAYERS], owned; NULL: none
-    RenderItem *items; // of each section, unless hidden, its guides and followers if there are any
+    RenderItem *items; // for each section, unless hidden, its guides and its followers, if any
     uint32_t item_count;
     DrawnBodies bodies;
 } Images;
 
-// What the pixels are, and whether there are also those of EXR's layers.
+// The kind of pixels, and whether there are EXR layers too.
 typedef struct ImagesForm {
     ImageKind kind;
     bool layers;
 } ImagesForm;
 
-// The arguments outlive the images, but for `form`; they may be destroyed (while the context is
-// current) in each case. Errors of renderer_create and paint_create.
+// The arguments, except `form`, must outlive the images, which may be destroyed (while the context
+// is current) in either case. Errors of renderer_create and paint_create.
 Result images_create(Images *images, const Scene *scene, const Assets *assets,
                      Simulation *simulation, const Framing *framing, const ImagesForm *form,
                      const Gpu *gpu, GpuTimer *timer, Error *error);
 void images_destroy(Images *images);
 
-// Draws the hair as the simulation has it now, with the lights of frame `frame`. `image` has the
-// size of the run, the channels of renderer_channels and the kind of renderer.options. Errors of
-// renderer_draw.
+// Draws the simulation's current hair with the lights of frame `frame`. `image` has the run's size,
+// the channels of renderer_channels and the kind of renderer.options. Errors of renderer_draw.
 Result images_draw(Images *images, int frame, const View *view, Image *image, Error *error);
 
-// The same in steps, as renderer_begin, renderer_settle and renderer_take, and with `layers`: what
-// EXR files have beside the image, if they have it.
+// The same in steps, like renderer_begin, renderer_settle and renderer_take; `layers`: the layers
+// of EXR files, if there are any.
 Result images_begin(Images *images, int frame, const View *view, Image *image,
                     Image layers[EXR_LAYERS], Error *error);
 bool images_are_late(const Images *images);

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The frame sink: takes finished images and writes them on worker threads while the next ones are
-// computed: one, and more, up to the number of processors, when images have to wait for it. Files
-// appear in the order of their frames. Videos, sheets and standard output have one.
-//
-// Use: output_create; for each frame output_acquire, fill the image, output_submit; output_finish;
-// output_destroy. All functions are called from one thread. The workers have every signal blocked.
-// After a failure of any function, or instead of output_finish, call output_destroy, if need be
-// after output_flush: no half-written file and no half a video remains.
+// The frame sink writes finished images on worker threads while the next ones are computed. It
+// starts with one worker and adds more, up to the number of processors, while images have to wait.
+// Files appear in the order of their frames. Videos, sheets and standard output have one worker.
 #pragma once
 
 #include "base/error.h"
@@ -20,62 +15,62 @@
 typedef struct Output Output;
 
 typedef struct OutputOptions {
-    const char *target; // as target_parse takes it: "DIR/", "name_%04d.png", "x.png", "x.mp4",
-                        // "x.webm", "x.gif", "x.y4m", "-", ...
+    const char *target; // as for target_parse: "DIR/", "name_%04d.png", "x.png", "x.mp4", "x.webm",
+                        // "x.gif", "x.y4m", "-", ...
     int width, height;  // pixels of every frame
     int channels;       // 3, or 4 for PNG, PFM, EXR and webm
-    ImageKind kind;     // 16 bits for PNG only; floats for PFM and EXR and for nothing else
+    ImageKind kind;     // 16 bits for PNG only; floats for PFM and EXR only
     bool layers;        // of EXR: each frame has layers
-    bool exr_float;     // of EXR: 32 bits a channel
-    bool records;       // of PFM: which scene each file shows, into a file beside them (record.h)
-    double fps;         // frames a second, used for videos
-    int frame_count;    // how many will come, 0: not known; "x.png" takes 1, or a sheet
-    int columns, rows;  // of a contact sheet that takes all frames, "x.png" or the like; <= 1: none
-    const ImageTexts *texts; // of each PNG file, which adds its frame's number; NULL: none
-    int queue_length; // images in the pool: drawn, waiting or being encoded; 0: 3, and one for
-                      // each worker more
+    bool exr_float;     // of EXR: 32 bits per channel
+    bool records;       // of PFM: write the scene of each file into a file next to them (record.h)
+    double fps;         // frames per second of videos
+    int frame_count;    // number of frames to come, 0: unknown; "x.png" takes 1, or a sheet
+    int columns, rows;  // of a contact sheet of all frames, such as "x.png"; <= 1: no sheet
+    const ImageTexts *texts; // of each PNG file, to which the frame's number is added; NULL: none
+    int queue_length; // images in the pool: drawn, waiting or being encoded; 0: 3, plus one for
+                      // each worker after the first
 } OutputOptions;
 
 typedef struct OutputCounters {
-    int frames;       // encoded so far
-    uint64_t bytes;   // in the files; a video or sheet counts when it is complete
+    int frames;       // number encoded so far
+    uint64_t bytes;   // in the files; a video or sheet counts once it is complete
     double encode_ms; // wall time that the workers spent encoding and writing
 } OutputCounters;
 
-// Refuses a terminal, makes the folder if needed, tries that a file can be created there, starts
-// ffmpeg for a video, and a worker. RESULT_USAGE for a target or a combination that makes no
-// sense, RESULT_FAILED with path and reason otherwise.
+// Refuses a terminal, creates the folder if needed, tests that a file can be created there, starts
+// ffmpeg for a video, and starts a worker. RESULT_USAGE for an invalid target or combination,
+// otherwise RESULT_FAILED with path and reason.
 Result output_create(Output **output, const OutputOptions *options, Error *error);
 
-// Lends an image of the pool; its pixels are undefined. Blocks while all are waiting or being
-// encoded. RESULT_FAILED with a worker's error, path and reason, if that has failed;
-// RESULT_INTERRUPTED once interrupt_requested().
+// Lends an image of the pool, with undefined pixels. Blocks while all images are waiting or being
+// encoded. RESULT_FAILED with path and reason if a worker has failed; RESULT_INTERRUPTED once
+// interrupt_requested().
 Result output_acquire(Output *output, Image **image, Error *error);
 
-// What belongs to an image that is lent out, to be filled like it. Sheets and videos leave it
-// out.
+// The extra data of an image that is lent, to be filled like the image. Sheets and videos ignore
+// it.
 FrameExtra *output_extra(Image *image);
 
-// Gives the image back to be written as frame `frame_index` (>= 0, part of the file's name; videos
-// go by the order of submission). Never blocks. Fails like output_acquire, the image is given back
-// all the same.
+// Returns the image to be written as frame `frame_index` (>= 0, part of the file's name; videos use
+// the order of submission). Never blocks. Fails like output_acquire, and takes the image back in
+// that case, too.
 Result output_submit(Output *output, int frame_index, Image *image, Error *error);
 
 // Waits until everything submitted is written and a video or sheet has its final name. Fails like
 // output_acquire, and with RESULT_FAILED if a video has no frame.
 Result output_finish(Output *output, Error *error);
 
-// Of a run that has failed: writes the frames that wait, each a file or a piece of a stream of its
-// own. Nothing for a video or a sheet, which would lack the rest.
+// For a run that has failed: writes waiting frames that are separate files or pieces of a stream.
+// Does nothing for a video or a sheet, which would be incomplete.
 void output_flush(Output *output);
 
-// Without a successful output_finish: drops what waits, kills ffmpeg and removes the unfinished
-// file. NULL is legal.
+// Without a successful output_finish, this drops waiting images, kills ffmpeg and removes the
+// unfinished file. NULL is allowed.
 void output_destroy(Output *output);
 
-// What has happened so far. Waits for nothing.
+// Current counters. Does not wait.
 OutputCounters output_count(Output *output);
 
-// Where to look: "out/frame_0000.png ... out/frame_0119.png" or the one file. Valid until the next
-// call or destroy.
+// The names of the results: "out/frame_0000.png ... out/frame_0119.png" or the single file. Valid
+// until the next call or destroy.
 const char *output_describe(Output *output);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Which scene the numbered files show whose format has no room for that (PFM, hair files): a small
-// text file beside them, x_.pfm.scenes for x_%04d.pfm, with a line for each file that was written:
-// the frame, its fingerprint and the CRC-32 of the file. Of a frame the last line counts. Processes
-// that share the frames append to the same record; a line that they garble is no line.
+// Records the scene of numbered files whose format can't store it (PFM, hair files): a small text
+// file next to them, x_.pfm.scenes for x_%04d.pfm, with a line for each written file: the frame,
+// its fingerprint and the CRC-32 of the file. The last line of a frame counts. Processes that share
+// the frames append to the same record; invalid lines are ignored.
 #pragma once
 
 #include "base/target.h"
@@ -18,19 +18,19 @@ typedef struct Record {
     int count;
 } Record;
 
-// The record's name, to be freed. NULL if the target has none (no number) or memory is short.
+// The record's file name, to be freed. NULL if the target has none (no number) or memory is short.
 char *record_path(const Target *target);
 
-// Appends the line of `frame`, whose file is complete. RESULT_FAILED with path and reason.
-// Nothing for a target without a number.
+// Appends the line of `frame`, whose file is complete. RESULT_FAILED with path and reason. Does
+// nothing for a target without a number.
 Result record_add(const Target *target, int frame, const char *fingerprint, Error *error);
 
-// Reads the lines of frames 0 .. last; a record that is missing has none. RESULT_FAILED when memory
-// is short. A zeroed struct may be destroyed.
+// Reads the lines of frames 0 .. last; a missing record has no lines. RESULT_FAILED when memory is
+// short. A zeroed struct may be destroyed.
 Result record_read(Record *record, const Target *target, int last, Error *error);
 void record_destroy(Record *record);
 
-// Whether the file `name` of the frame is the one that was recorded with this fingerprint.
-// RESULT_FAILED with the name and why it is not.
+// RESULT_OK if the file `name` of the frame is the one recorded with this fingerprint; otherwise
+// RESULT_FAILED with the name and the reason.
 Result record_compare(const Record *record, int frame, const char *name, const char *fingerprint,
                       Error *why);

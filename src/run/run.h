@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The room run: a run of tractrix-render. It takes a scene, simulates and draws its frames one
-// after the other, and hands on images or a video, a cache, hair files and statistics: run (set-up
+// The room run: a run of tractrix-render. From a scene, it simulates and draws one frame after the
+// other, and outputs images or a video, a cache, hair files and statistics. Its parts: run (set-up
 // and order), sequence (the loop over frames), frame_source (simulation or cache), images and
-// output (drawing and encoding), survey (a look at all frames for the
-// camera), exposure (a look at the first), export, stats, help.
+// output (drawing and encoding), survey (simulates all frames for the camera), exposure (meters the
+// first), export, stats, help.
 #pragma once
 
 #include "run/images_output.h"
 #include "run/resume.h"
 #include "run/sequence.h"
 
-// All that a run makes, so that one function can destroy it in whatever state it is. The caller
-// fills in `scene` (scene_from_arguments) and `begin_ms`.
+// Everything a run creates, so that one function can destroy it in any state. The caller sets
+// `scene` (scene_from_arguments) and `begin_ms`.
 typedef struct Run {
     Scene scene;
     Assets assets;
@@ -21,8 +21,8 @@ typedef struct Run {
     Framing framing;
     float exposure; // EV, of all images
     Simulation simulation;
-    Images images;  // empty unless the scene has an output ...
-    Output *output; // ... NULL
+    Images images;  // empty unless the scene has an output
+    Output *output; // NULL unless the scene has an output
     FrameSource source;
     Exporter exporter;
     bool exports;
@@ -32,12 +32,12 @@ typedef struct Run {
     double begin_ms, loaded_ms, ready_ms; // clock_ms
 } Run;
 
-// Opens everything, goes through the frames and finishes the files. Reports on standard error
-// unless --quiet. Errors of every part; to be called once.
+// Opens everything, draws all frames and finishes the files. Reports on standard error unless
+// --quiet. Errors of every part; must be called once only.
 Result run_go(Run *run, Error *error);
 
-// Prints the name of the platform that the device is (gpu/platform.h). RESULT_NO_GL.
+// Prints the name of the device's platform (gpu/platform.h). RESULT_NO_GL.
 Result run_print_platform(const RunParams *params, FILE *stream, Error *error);
 
-// Without a successful run_go, unfinished files are removed.
+// Without a successful run_go, this removes unfinished files.
 void run_destroy(Run *run);

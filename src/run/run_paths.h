@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The files that a run of tractrix-render names, checked and claimed before any is opened.
+// Checks and claims the files that a run of tractrix-render names, before it opens any.
 #pragma once
 
 #include "scene/scene.h"
 
-// Claims all files (paths.h). Refuses a run that would overwrite a file that it reads, or write one
-// file under two flags (paths.h), and outputs that a scene file, not the command line, places
-// outside its own folder (unless --allow-paths): a scene from elsewhere may not write where it
-// likes, nor read devices or pipes. RESULT_USAGE naming both uses, RESULT_BAD_INPUT naming the
-// scene's key, RESULT_FAILED when memory is short.
+// Claims all files (paths.h). Refuses a run that would overwrite one of its inputs, or write one
+// file for two flags. Without --allow-paths, also refuses outputs outside the scene file's folder
+// that the scene file names, and not the command line: a scene from elsewhere must not write
+// anywhere else, nor read devices or pipes. RESULT_USAGE names both uses, RESULT_BAD_INPUT the
+// scene's key; RESULT_FAILED when memory is short.
 Result run_paths_claim(const Scene *scene, Error *error);

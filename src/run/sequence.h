@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The main loop: goes through a scene's frames, draws the requested ones, and hands them to the
+// The main loop: iterates over a scene's frames, draws the requested ones, and passes them to the
 // output.
 #pragma once
 
@@ -15,19 +15,19 @@ typedef struct Sequence {
     Output *output;      // of the images; NULL: none
     Exporter *exporter;  // NULL: no hair files
     const Fingerprint *fingerprint;
-    const bool *done; // [frames] those that need not be drawn again; NULL: none
+    const bool *done; // [frames] that need not be drawn again; NULL: none
     GpuTimer *timer;
-    Stats *stats; // may be off
+    Stats *stats; // may be turned off
     int frames_drawn;
-    int frames_repeated; // equal to the frame before: written again, not drawn again
+    int frames_repeated; // equal to the previous frame: written again but not drawn
 } Sequence;
 
 // The last frame that is needed, and whether a frame is drawn (--first, --last, --every).
 int sequence_last_frame(const RunParams *run);
 bool sequence_draws_frame(const RunParams *run, int frame);
 
-// How many frames are to be drawn.
+// The number of frames to draw.
 int sequence_count_drawn(const RunParams *run);
 
-// Runs all frames. RESULT_INTERRUPTED between two frames once SIGINT or SIGTERM has come.
+// Processes all frames. RESULT_INTERRUPTED between two frames after SIGINT or SIGTERM.
 Result sequence_run(Sequence *sequence, Error *error);

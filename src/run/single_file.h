@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one file that all frames go to: a video, raw video or a contact sheet.
+// The single file of all frames: a video, raw video or a contact sheet.
 #pragma once
 
 #include "base/target.h"
@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-// Zeroed: each frame has a file of its own. May be destroyed then.
+// Zeroed: each frame has a file of its own; such a struct may be destroyed.
 typedef struct SingleFile {
     Video *video;     // NULL unless ffmpeg writes a video
     Y4m y4m;          // without planes unless this is raw video
@@ -31,13 +31,13 @@ bool single_file_is_video(const SingleFile *single);
 // Appends the next frame. RESULT_FAILED with path and reason.
 Result single_file_add(SingleFile *single, const Image *image, Error *error);
 
-// Completes the file, which then has its name and *bytes. `file` and `texts`: what a sheet is
-// written with. RESULT_FAILED with path and reason.
+// Completes the file, gives it its name and sets *bytes. `file` and `texts` are for a sheet.
+// RESULT_FAILED with path and reason.
 Result single_file_finish(SingleFile *single, FrameFile *file, ImageTexts *texts, uint64_t *bytes,
                           Error *error);
 
-// Makes an add or a finish that waits for ffmpeg in another thread fail.
+// Makes adding or finishing in another thread fail if it waits for ffmpeg.
 void single_file_stop(SingleFile *single);
 
-// Removes a file that is not complete.
+// Removes an incomplete file.
 void single_file_destroy(SingleFile *single);

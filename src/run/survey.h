@@ -13,19 +13,19 @@ typedef struct SurveyMove {
 } SurveyMove;
 
 typedef struct SurveyReport {
-    int frames;      // all of the scene
-    double ms;       // that it took
+    int frames;      // number of frames of the scene
+    double ms;       // time taken
     SurveyMove step; // the largest `most` and the largest `rms` from one frame to the next
     SurveyMove seam; // from the last frame to the first
 } SurveyReport;
 
-// Whether the scene asks for it: --framing, or a turntable whose camera is left to the program.
+// Whether the scene needs a survey: it has --framing, or a turntable with an automatic camera.
 bool survey_is_wanted(const Scene *scene);
 
-// Goes through all frames 0 .. run.frames - 1 with a simulation of its own (or run.from_cache),
-// writing nothing, and moves the camera of `framing`, which outline_frame has filled in, to fit
-// what is drawn there (fit_solve): hair, with its followers and radii, and the mesh, unless
-// run.framing says hair only. Straight between particles; --smooth may bulge beyond.
+// Simulates all frames 0 .. run.frames - 1 separately (or reads run.from_cache) without writing
+// anything. Moves the camera of `framing`, which outline_frame has filled in, to fit everything
+// that is drawn (fit_solve): hair, with followers and radii, and the mesh, unless run.framing is
+// hair only. Assumes straight segments; curves of --smooth may reach slightly beyond.
 // RESULT_INTERRUPTED between two frames; other errors as simulation_create and frame_source_look.
 Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *scene,
                          const Assets *assets, const Gpu *gpu, Error *error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Raw video, YUV4MPEG2, for programs that read pipes: full chroma (4:4:4), 8 bits, BT.709, limited
-// range, as players and encoders assume where a file does not say.
+// range, which players and encoders assume by default.
 #pragma once
 
 #include "base/error.h"
@@ -17,16 +17,16 @@ typedef struct Y4m {
     uint64_t bytes;  // written so far
 } Y4m;
 
-// Begins the file, or standard output where `path` is "-". `fps` is written as a fraction: exact
-// for whole numbers and for those of broadcast (30000/1001), else to a millionth. RESULT_FAILED
-// with path and reason.
+// Creates the file, or uses standard output if `path` is "-". `fps` is written as a fraction: exact
+// for integers and broadcast rates (30000/1001), otherwise to a millionth. RESULT_FAILED with path
+// and reason.
 Result y4m_create(Y4m *y4m, const char *path, int width, int height, double fps, Error *error);
 
 // Appends an IMAGE_8 of 3 channels. RESULT_FAILED with path and reason.
 Result y4m_write(Y4m *y4m, const Image *image, Error *error);
 
-// Completes the file, which then has its name. RESULT_FAILED with path and reason.
+// Completes the file and gives it its name. RESULT_FAILED with path and reason.
 Result y4m_finish(Y4m *y4m, Error *error);
 
-// Removes the file if it is not complete.
+// Removes an incomplete file.
 void y4m_destroy(Y4m *y4m);
