@@ -2,6 +2,10 @@
 // Path-traced cases of light in hair: a folder of scenes for tractrix-render, NAME.json, each with
 // the path tracer's image in blocks of 8 x 8 pixels, NAME.csv. Also the difference of our images
 // from it.
+//
+// Columns of the CSV file: column, row (from the top left), one_r, one_g, one_b (linear radiance
+// with single scattering), all_r, all_g, all_b (with every bounce), coverage (share of the pixels
+// that hair covers). Each block has one line, in any order.
 #pragma once
 
 #include "base/error.h"

@@ -6,6 +6,9 @@
 //
 // Gravity at time 0, with which a groom is in balance (--rest groom), is rest_share times the later
 // gravity.
+//
+// Strands that are stepped together, a set, share most fields; shape, tilt and shape_seed are
+// individual.
 #pragma once
 
 #include "base/params.h"

@@ -2,6 +2,14 @@
 // The basis of accuracy benchmarks: strands with a method (a solver with its settings) that the
 // caller steps, and the exact motions that they are compared with, a folder of NAME.csv and
 // NAME.json.
+//
+// A motion is that of a chain of particles of mass 1 on rigid massless segments, from rest:
+// gravity, acceleration drag (wind - v), and a root that stays or moves as x = x0 + amplitude (1 -
+// cos(2 pi frequency t)). The CSV file has columns frame, t, x0, y0, z0, x1, ... (s and metres),
+// with evenly spaced frames, some of which may be missing. The JSON file has n, strand_length,
+// gravity, drag_c, wind, root_motion {amp, freq}; and float32_floor_rms_over_length_per_frame by
+// frame number: how far rounding the start to float32 moves the exact strand, RMS relative to its
+// length.
 #pragma once
 
 #include "base/csv.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// File names as servers of continuous integration want them.
+// File names in the form that CI servers expect.
 #pragma once
 
-// The name of the file relative to the folder of the checkout: that of $CI_PROJECT_DIR (GitLab) or
-// $GITHUB_WORKSPACE, else the working directory. Absolute if the file lies outside, or where
-// $JENKINS_URL is set, as Jenkins' plugin for attachments asks for. The file need not exist. To be
+// The name of the file relative to the checkout's folder: $CI_PROJECT_DIR (GitLab),
+// $GITHUB_WORKSPACE, or else the working directory. Absolute if the file lies outside, or if
+// $JENKINS_URL is set, as Jenkins' plugin for attachments requires. The file need not exist. To be
 // freed; NULL when memory is short.
 char *ci_path(const char *path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Verdicts as JUnit's XML, as GitLab, Jenkins and others read it.
+// Verdicts in JUnit's XML format, which GitLab, Jenkins and others read.
 #pragma once
 
 #include "compare/verdict.h"
@@ -12,8 +12,8 @@ typedef struct JunitOptions {
     time_t started;
 } JunitOptions;
 
-// A test case for each pair: unreadable and unrendered images are errors, other bad verdicts
-// failures, with the sheet, the heat map, B and A as attachments if they are there, one a line:
+// A test case for each pair: unreadable and unrendered images are errors, other bad verdicts are
+// failures, with the existing ones of sheet, heat map, B and A as attachments, one per line:
 // [[ATTACHMENT|path]], relative as in ci_path.h. RESULT_FAILED with path and reason.
 Result junit_write(const char *path, const PairList *list, const Verdict *verdicts,
                    const JunitOptions *options, Error *error);

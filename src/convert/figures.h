@@ -7,26 +7,27 @@
 #include <jansson.h>
 #include <stdio.h>
 
-// Of one quantity over all strands, segments, ...; all 0 if there are none.
+// Statistics of one quantity over all strands, segments, ...; all 0 if there are none.
 typedef struct Figure {
     uint64_t count;
-    double min, low, median, high, max; // low, high: 5 % and 95 % are not greater
+    double min, low, median, high, max; // low, high: percentiles 5 and 95
     double mean;
 } Figure;
 
 typedef enum FigureKind {
     FIGURE_SIZE,      // vertices, of strands
     FIGURE_LENGTH,    // m, of strands
-    FIGURE_REACH,     // from root to tip over the length, of strands: 1 is straight
+    FIGURE_REACH,     // distance from root to tip relative to the length, of strands: 1 is straight
     FIGURE_SEGMENT,   // m, length of segments
-    FIGURE_TURN,      // degrees between a segment and the next, at inner vertices
-    FIGURE_CURVATURE, // 1/m, there: the turn in radians over the mean of the segments' lengths
-    FIGURE_ROOTS,     // m, from a root to the nearest other one
-    FIGURE_DEPTH,     // mm, of vertices inside a mesh, but roots
+    FIGURE_TURN,      // degrees between successive segments, at inner vertices
+    FIGURE_CURVATURE, // 1/m, at inner vertices: the turn in radians over the mean length of the two
+                      // segments
+    FIGURE_ROOTS,     // m, from a root to the nearest other root
+    FIGURE_DEPTH,     // mm, of vertices inside a mesh, except roots
     FIGURE_KINDS
 } FigureKind;
 
-// A number of vertices and how many strands have it.
+// A vertex count and the number of strands that have it.
 typedef struct SizeCount {
     uint32_t size, strands;
 } SizeCount;
@@ -36,19 +37,19 @@ typedef struct Figures {
     Figure figures[FIGURE_KINDS];
     double total_length;   // m
     float low[3], high[3]; // box of all vertices, m
-    SizeCount *sizes;      // [size_count], owned, by rising size
+    SizeCount *sizes;      // [size_count], owned, ascending
     uint32_t size_count;
     bool has_mesh;
-    uint32_t strands_inside; // that have a vertex inside the mesh
+    uint32_t strands_inside; // number of strands with a vertex inside the mesh
 } Figures;
 
-// `surface`: of a mesh by which depth is measured; NULL: there is none, and no such figure.
-// RESULT_FAILED when memory is short. A zeroed struct may be destroyed.
+// `surface`: of the mesh for depths; NULL: depths are not measured. RESULT_FAILED when memory is
+// short. A zeroed struct may be destroyed.
 Result figures_measure(Figures *figures, const Strands *strands, const Surface *surface,
                        Error *error);
 void figures_destroy(Figures *figures);
 
-// Prints a table of them, and how many strands have how many vertices.
+// Prints a table of the statistics and of vertex counts.
 void figures_print(const Figures *figures, FILE *stream);
 
 // NULL when memory is short.

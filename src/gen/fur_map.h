@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A quantity over a surface: a number, a formula of the place, or an image.
+// A quantity that varies over a surface: a number, a formula of position, or an image.
 #pragma once
 
 #include "base/formula.h"
@@ -8,43 +8,42 @@
 
 // A zeroed map is 0 everywhere.
 typedef struct FurMap {
-    double number; // where there is neither of the others
+    double number; // if there is neither formula nor image
     Formula formula;
     Image image;
 } FurMap;
 
-// Reads `text`: a number; a name that ends in .png, an image that lies on the mesh by its texture
-// coordinates (u to the right, v up from the lowest row, wrapping around); or a formula (formula.h)
-// of x, y, z (m), nx, ny, nz (the normal) and u, v (0 where the mesh has none). `name` (an option)
-// stands in front of errors: RESULT_USAGE for a formula that cannot be read or an image on a mesh
-// some of whose triangles have no texture coordinates, RESULT_BAD_INPUT for an image that cannot
-// be read.
+// Reads `text`: a number; a name that ends in .png, an image placed by the mesh's texture
+// coordinates (u to the right, v up from the lowest row, repeating); or a formula (formula.h) of x,
+// y, z (m), nx, ny, nz (the normal) and u, v (0 if the mesh has none). Errors start with `name` (an
+// option): RESULT_USAGE for an invalid formula, or an image on a mesh with triangles without
+// texture coordinates; RESULT_BAD_INPUT for an image that can't be read.
 Result fur_map_create(FurMap *map, const char *name, const char *text, const Mesh *mesh,
                       Error *error);
 void fur_map_destroy(FurMap *map);
 
-// The value there; of an image the mean of red, green and blue, each 0 to 1 as it stands in the
-// file (sRGB or not), bilinear. Not for two threads at once.
+// The value at a point; of an image, the mean of red, green and blue, each 0 to 1 as stored in the
+// file (sRGB or not), bilinear. Must not be called by two threads at once.
 double fur_map_at(const FurMap *map, const Surface *surface, const SurfacePoint *point);
 
-// --- The way in which fur is combed: a direction along a surface.
+// --- Combing: a direction along the surface.
 
-// A zeroed comb combs nothing.
+// A zeroed comb has no direction.
 typedef struct FurComb {
-    FurMap axis[3]; // x, y, z; of an image only the first
+    FurMap axis[3]; // x, y, z; for an image only the first
     bool combs, is_image;
 } FurComb;
 
-// Reads `text`: three numbers or formulas with commas between them, a vector in space;
-// or an image, whose red and green say how far along u and v, from -1 (black) over 0 (the level in
-// the middle) to 1. Errors as fur_map_create gives them, with `name` in front.
+// Reads `text`: three comma-separated numbers or formulas, a vector in space; or an image whose red
+// and green give the components along u and v, from -1 (black) over 0 (the middle level) to 1.
+// Errors of fur_map_create, starting with `name`.
 Result fur_map_create_comb(FurComb *comb, const char *name, const char *text, const Mesh *mesh,
                            Error *error);
 void fur_map_destroy_comb(FurComb *comb);
 
-// The direction at a point where the surface has this unit normal: the vector, shortened to a
-// length of 1 if it is longer, projected onto the surface. Its length is 1 if at least a quarter is
-// left of the vector, else four times what is left: hair is combed less where the vector is short
-// or stands on the surface.
+// The combed direction at a point with this unit normal: the vector is shortened to length 1 if it
+// is longer, and projected onto the surface. The result has length 1 if the projection is at least
+// a quarter long, otherwise four times the projection's length: hair is combed less where the
+// vector is short or almost perpendicular to the surface.
 void fur_map_comb_at(const FurComb *comb, const Surface *surface, const SurfacePoint *point,
                      const Double3 normal, Double3 direction);

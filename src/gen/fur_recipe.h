@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What fur is grown by, and the command line of tractrix-gen fur.
+// The parameters of fur, and the command line of tractrix-gen fur.
 #pragma once
 
 #include "gen/gen_output.h"
@@ -7,51 +7,51 @@
 typedef struct FurRecipe {
     int seed;
     // Roots.
-    int count;           // strands; 0: by per_cm2
-    double per_cm2;      // strands on a square centimetre where the density is 1
+    int count;           // number of strands; 0: by per_cm2
+    double per_cm2;      // strands per square centimetre where the density is 1
     int vertices;        // per strand, 2 .. 1024
-    const char *density; // a map (fur_map.h) of the share of strands; NULL: even
-    double root_lift;    // m: roots lie so far over the surface
+    const char *density; // a map (fur_map.h) of the share of strands; NULL: uniform
+    double root_lift;    // m: height of roots above the surface
     // Form.
     double length;           // m: of the longest strand
-    double length_variation; // 0 .. 1: strands are up to this share shorter, at random
-    const char *length_map;  // a map of factors, cut to 0 .. 1; NULL: 1
-    const char *comb;        // a comb (fur_map.h); NULL: hair stands up
-    double lift_deg;         // between hair and surface at the root where it is combed, 0 .. 90
-    double lie;              // m: over about so much hair comes to lie as it is combed; 0: never
-    double comb_reach;       // m: so far from the root the comb reaches; 0: all along
-    double gravity_bend;     // rad/m: how fast hair that is level turns down
-    double volume;           // m: so far hair keeps off the surface, far from its root
-    double noise;            // how much guides stray, as a share of the comb
-    double noise_size;       // m: of what strays together
-    double scatter;          // how much strands stray at the root, for themselves
+    double length_variation; // 0 .. 1: strands are randomly shorter by up to this share
+    const char *length_map;  // a map of factors, clamped to 0 .. 1; NULL: 1
+    const char *comb;        // a comb (fur_map.h); NULL: hair stands upright
+    double lift_deg;         // angle between combed hair and surface at the root, 0 .. 90
+    double lie;              // m: the length over which hair takes the combed direction; 0: never
+    double comb_reach;       // m: combed up to this distance from the root; 0: everywhere
+    double gravity_bend;     // rad/m: how fast level hair turns down
+    double volume;           // m: distance of hair from the surface, far from its root
+    double noise;            // how much guides stray, relative to the comb
+    double noise_size;       // m: size of regions that stray together
+    double scatter;          // how much single strands stray at the root
     // Guides.
-    int guides;           // strands that are grown; the others lie between them. 0: all are
-    int clumps;           // guides that strands gather around; 0: all guides
+    int guides;           // number of grown strands; the others lie between them. 0: all are grown
+    int clumps;           // number of guides around which strands gather; 0: all guides
     double clump;         // 0 .. 1: how close to their guide the tips are
-    double clump_root;    // 0 .. 1: and the roots
-    double clump_profile; // 0.01 .. 0.99: where strands gather; 0.5 evenly, less: towards the tip
+    double clump_root;    // 0 .. 1: how close the roots are
+    double clump_profile; // 0.01 .. 0.99: where strands gather; 0.5: evenly, less: towards the tip
     // Curls.
     double curl_radius;    // m
-    double curl_frequency; // turns a metre
-    double curl_disorder;  // 0: those of a clump wind in step, 1: each for itself
+    double curl_frequency; // turns per metre
+    double curl_disorder;  // 0: the curls of a clump are in phase, 1: independent
     // Disorder.
-    double frizz;           // m: at the tip
-    double frizz_frequency; // waves a metre
-    double flyaways;        // share of strands that join no clump and have more frizz
-    // What is written besides.
-    int followers;        // that the renderer draws for each strand
-    double thickness;     // m: of the hair at the root; 0: none is written
-    double tip_thickness; // share of it at the tip
+    double frizz;           // m: amplitude at the tip
+    double frizz_frequency; // waves per metre
+    double flyaways;        // share of strands outside clumps, with more frizz
+    // Written in addition to the strands.
+    int followers;        // number that the renderer draws for each strand
+    double thickness;     // m: of the hair at the root; 0: not written
+    double tip_thickness; // ratio of the tip's thickness
 } FurRecipe;
 
-// What `tractrix-gen fur --help` says.
+// The text of `tractrix-gen fur --help`.
 extern const OptionsProgram FUR_RECIPE_PROGRAM;
 
-// Short fur that stands off.
+// Short upright fur.
 FurRecipe fur_recipe_default(void);
 
-// RESULT_USAGE for what does not go together; single values are in range.
+// RESULT_USAGE for an invalid combination; single values must be in range.
 Result fur_recipe_check(const FurRecipe *recipe, Error *error);
 
 typedef struct FurOptions {
@@ -62,5 +62,5 @@ typedef struct FurOptions {
     bool up_z;
 } FurOptions;
 
-// argv[0] is the word fur. Errors as options_parse gives them, and for what does not go together.
+// argv[0] is the word fur. Errors of options_parse, and RESULT_USAGE for an invalid combination.
 Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, Error *error);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The room gen, the program tractrix-gen, makes hair: styles and test sets on a sphere or a head
-// (strands_make.h), fur on any mesh (fur.h: roots, guides that grow over the surface, strands woven
-// between them). It takes the command line, meshes and maps, and hands on Strands, which it writes
-// by the table of formats.
+// (strands_make.h), and fur on any mesh (fur.h: roots, guides that grow over the surface, strands
+// woven between them). From the command line, meshes and maps, it makes Strands and writes them by
+// the table of formats.
 //
-// This file: what the commands of tractrix-gen share: options, and where the hair goes.
+// This file: the options that all commands of tractrix-gen share, and writing the hair.
 #pragma once
 
 #include "base/options.h"
@@ -18,14 +18,13 @@ typedef struct GenOutput {
     bool quiet;
 } GenOutput;
 
-// Where messages go: standard output may be the hair's ("-").
+// The stream of messages: standard output may be the hair's ("-").
 static inline FILE *gen_messages(const GenOutput *output)
 {
     return output->path && outfile_is_stdout(output->path) ? stderr : stdout;
 }
 
-// Without --format the suffix says which; names of other suffixes, and standard output, get
-// TressFX 4.
+// Without --format, the suffix decides; other suffixes and standard output get TressFX 4.
 static inline void gen_choose_format(GenOutput *output)
 {
     FormatKind kind = output->path ? format_choose(output->path, NULL) : FORMAT_KINDS;

@@ -8,6 +8,6 @@
 
 enum { STUDIO_LIGHT_HEIGHT = 32 }; // px; twice as wide
 
-// Writes it as .pfm, in steps of 1/1024, so that every machine writes the same bytes. RESULT_FAILED
+// Writes it as .pfm in steps of 1/1024, so that the bytes are equal on every machine. RESULT_FAILED
 // with the reason.
 Result studio_light_write(const char *path, Error *error);

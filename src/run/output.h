@@ -2,6 +2,11 @@
 // The frame sink writes finished images on worker threads while the next ones are computed. It
 // starts with one worker and adds more, up to the number of processors, while images have to wait.
 // Files appear in the order of their frames. Videos, sheets and standard output have one worker.
+//
+// Use: output_create; for each frame output_acquire, fill the image, output_submit; output_finish;
+// output_destroy. All functions must be called from one thread. The workers block every signal.
+// After a failure of any function, or instead of output_finish, call output_destroy, after
+// output_flush if wanted: no incomplete file or video remains.
 #pragma once
 
 #include "base/error.h"
