@@ -20,7 +20,7 @@ typedef struct DrawnHair {
     const uint32_t *ids;
 } DrawnHair;
 
-// A frame. The part of it that is drawn is the window of `drawing->draw`.
+// A frame. The part of it that is being drawn is the window of `drawing->draw`.
 typedef struct BackendFrame {
     Drawing *drawing;
     const DrawnHair *hair; // [hair_count]
@@ -30,7 +30,7 @@ typedef struct BackendFrame {
     float middle[3]; // m, world: of the hair
 } BackendFrame;
 
-// Measures the time of passes; `timer` is the GpuTimer.
+// Measures the times of passes; `timer` is the GpuTimer.
 typedef struct BackendTimer {
     struct GpuTimer *timer;
     void (*begin)(struct GpuTimer *timer, const char *name);
@@ -38,23 +38,25 @@ typedef struct BackendTimer {
 } BackendTimer;
 
 typedef struct BackendOptions {
-    const RendererOptions *options; // of a window: its size, `raster` decided; they stay
+    const RendererOptions *options; // for a window: they have its size and a definite `raster`, and
+                                    // do not change
     const struct Gpu *gpu;
     BackendTimer timer;
 } BackendOptions;
 
 // Every function returns RESULT_FAILED if memory is short or a shader does not compile.
 typedef struct DrawBackend {
-    bool reads_hair; // DrawnHair is to be in memory
+    bool reads_hair; // DrawnHair must be in memory
     Result (*create)(void **state, const BackendOptions *options, Error *error);
     void (*destroy)(void *state); // NULL is legal
     // The mesh has been replaced or removed.
     Result (*set_mesh)(void *state, const DrawnMesh *mesh, Error *error);
-    void (*move_mesh)(void *state, const DrawnMesh *mesh); // its vertices alone; NULL: no need
+    // only its vertices have moved; NULL: not needed
+    void (*move_mesh)(void *state, const DrawnMesh *mesh);
     // A frame is drawn by these functions, in this order: shadow maps; light among hair; then for
-    // each window `shade` (what stands behind the hair, and its ribbons) and `composite`. `image`
-    // is filled at once, or, if there is `take`, when `take` is called with the place at which the
-    // image was begun.
+    // each window `shade` (mesh and floor behind the hair, and its ribbons) and `composite`.
+    // `image` is filled at once, or, if there is `take`, when `take` is called with the value of
+    // `place` at the image's start.
     Result (*shadow)(void *state, const BackendFrame *frame, Error *error);
     Result (*scatter)(void *state, const BackendFrame *frame, Error *error);
     Result (*shade)(void *state, const BackendFrame *frame, Error *error);

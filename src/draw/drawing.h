@@ -13,14 +13,14 @@
 
 // Begins with {.tables.stock = gpu->tables}.
 typedef struct Drawing {
-    DrawParams whole; // of the image
-    DrawParams draw;  // with the values of the band that is being drawn
+    DrawParams whole; // of the whole image
+    DrawParams draw;  // of the band that is being drawn
     const RenderItem *items;
     uint32_t item_count;
-    Look *looks; // [look_room], owned: of the items
+    Look *looks; // [look_room], owned: one for each item
     uint32_t look_room;
     int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
-    int base_box[4]; // the same of mesh and floor
+    int base_box[4]; // box of mesh and floor together
     ScatterTables tables;
 } Drawing;
 

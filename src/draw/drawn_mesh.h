@@ -11,7 +11,7 @@ typedef struct DrawnMesh {
     float (*tint)[3];      // [vertices], owned: factors of the colour, see scalp_tint.h; NULL: 1
     float color[3];        // linear RGB
     float low[3], high[3]; // bounds in the head's frame, m
-    uint64_t version;      // another one whenever any of this changes
+    uint64_t version;      // changes whenever any of this changes
 } DrawnMesh;
 
 // Copies the mesh. RESULT_FAILED if memory is short.

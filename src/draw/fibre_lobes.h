@@ -19,10 +19,10 @@ typedef struct FibreTable {
 typedef struct FibreLobes {
     float variance[3]; // of R, TT, TRT along the fibre, rad^2
     float tilt_cos[3], tilt_sin[3];
-    float color[3];        // what a diameter lets through, linear
+    float color[3];        // transmittance of one diameter, linear
     float (*azimuthal)[4]; // [3][SCATTER_INCLINATIONS][SCATTER_AZIMUTHS], owned
-    float (*albedo)[3];    // [SCATTER_INCLINATIONS], owned: share of light that is scattered
-    uint64_t serial;       // another one for each that was made
+    float (*albedo)[3];    // [SCATTER_INCLINATIONS], owned: share of light that the fibre scatters
+    uint64_t serial;       // unique for each FibreLobes that was made
 } FibreLobes;
 
 // Makes the lobes of fibres with this material and colour; false if memory is short. A zeroed

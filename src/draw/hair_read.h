@@ -5,10 +5,10 @@
 #include "draw/backend.h"
 #include "sim/hair.h"
 
-// The buffers that are being read. They are mapped if the driver keeps them in the CPU's memory,
-// else copied. A zeroed struct is empty.
+// The buffers being read. They are mapped if the driver keeps them in the CPU's memory, and copied
+// otherwise. A zeroed struct is empty.
 typedef struct HairRead {
-    bool copies; // set before use: buffers lie in memory of the GPU's own
+    bool copies; // set before use: buffers are in memory of the GPU
     struct ReadBuffer {
         GLuint buffer;
         int64_t size, room;

@@ -14,7 +14,7 @@ typedef struct LightMesh {
     const float (*vertices)[3];
     const uint32_t (*triangles)[3];
     uint32_t vertex_count, triangle_count;
-    float rotation[4], translation[3]; // its frame -> world
+    float rotation[4], translation[3]; // from the mesh's frame to the world
 } LightMesh;
 
 typedef struct LightBlocks {
@@ -40,8 +40,9 @@ enum { LIGHT_PATH_MOST = 3 * 66 };
 typedef struct LightPath {
     int count;
     ptrdiff_t way[LIGHT_PATH_MOST]; // in LightBlocks.open, from the cell's own on axis 0
-    int until[3][LIGHT_PATH_MOST]; // ways before the n-th step on an axis; those there are not: all
-    bool up[3];                    // the axis' steps are towards higher cells
+    int until[3][LIGHT_PATH_MOST];  // number of steps before the n-th step on an axis; all steps if
+                                    // there is no n-th
+    bool up[3];                     // steps on this axis go towards higher cells
 } LightPath;
 
 // Finds the path along the unit vector `way`. A lattice has at most 65 cells along each axis.

@@ -9,7 +9,7 @@
 #include "glsl/draw/light.h"
 #include "glsl/kernel/cell.h"
 
-enum { GRID_WIDE = LIGHT_WIDE }; // floats of a cell: [group][channel][lane]
+enum { GRID_WIDE = LIGHT_WIDE }; // floats per cell: [group][channel][lane]
 
 // The variance by which lobes are widened, because a direction stands for a solid angle of 4 pi /
 // ORDINATES. A disc of this angle has the variance 1 / ORDINATES along each axis; the factor 3/4
@@ -23,26 +23,26 @@ typedef struct GridKind {
     FibreLobes lobes;                          // a copy: arrays are not owned
     float (*scatter)[3][ORDINATES][ORDINATES]; // [TANGENTS][channel][in][out], owned
     bool has_scatter[TANGENTS];
-    float (*first)[TANGENTS][GRID_WIDE]; // [lights], owned: of unit light
-    float first_way[MAX_LIGHTS][4];      // that `first` is for
+    float (*first)[TANGENTS][GRID_WIDE]; // [lights], owned: for light of strength 1
+    float first_way[MAX_LIGHTS][4];      // the directions for which `first` was computed
     bool has_first[MAX_LIGHTS];
     float (*gather)[GRID_WIDE][CELL_PATCH_NODES]; // [CELL_PATCHES], owned
     float gather_eye[3];
     bool has_gather;
-    uint32_t made[FIELD_TABLES]; // another number whenever a table is
+    uint32_t made[FIELD_TABLES]; // changes whenever a table is made
 } GridKind;
 
 // A zeroed struct is empty.
 typedef struct LightField {
     LightLattice lattice;
-    float longest; // m, segment
-    int pieces;    // of a segment
+    float longest; // m, of all segments
+    int pieces;    // number that a segment is divided into
     int lights;
     bool tinted;                   // hair has paint
     float to_light[MAX_LIGHTS][4]; // in the lattice's axes: unit vector to a light far away, or
                                    // from the middle to a lamp; w: its variance, see draw.h
-    float around[GRID_WIDE];       // radiance by ordinate: what comes from all around
-    float *walls; // [axes][cells, and one more around]: LightBlocks.open, 1 beside the lattice
+    float around[GRID_WIDE];       // ambient radiance by ordinate
+    float *walls; // [axes][cells plus one around]: LightBlocks.open, 1 outside the lattice
     size_t wall_room;
     bool walled;
     GridKind kinds[LIGHT_GRID_KINDS];
@@ -78,7 +78,7 @@ static inline const float *light_field_walls(const LightField *field, int axis)
     return field->walled ? field->walls + (size_t)axis * z * ((size_t)n[2] + 2) + z + y + 1 : NULL;
 }
 
-// One of so many strands is used and represents the others.
+// The group size: one strand of each group of this many is used and represents them all.
 static inline uint light_field_step(const GridScene *scene)
 {
     return scene->step > 1 ? scene->step : 1;

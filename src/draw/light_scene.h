@@ -10,12 +10,13 @@
 
 #include "glsl/draw/draw.h"
 
-enum { LIGHT_GRID_KINDS = 4 }; // of fibres that scatter in ways of their own; others share the last
+// kinds of fibres that scatter differently; further kinds share the last
+enum { LIGHT_GRID_KINDS = 4 };
 
 // A batch of hair that receives and scatters light.
 typedef struct GridHair {
     MappedCaster caster;
-    int kind; // of its fibres
+    int kind; // kind of its fibres
 } GridHair;
 
 typedef struct GridScene {
@@ -25,17 +26,17 @@ typedef struct GridScene {
     int kind_count;          // 1 .. LIGHT_GRID_KINDS
     const DrawParams *draw;  // lights, sky, ground, eye
     const Ambient *ambient;  // its environment; NULL: none
-    // That tells light_grid_solve what is left of lights (lanes/shadow.h); NULL: no light has a
+    // The shares of lights past shadows (lanes/shadow.h) for light_grid_solve; NULL: no light has a
     // map.
     const struct LaneShadow *shadow;
-    float to_eye[3];        // unit, world: against the way that the camera looks
-    int map_of[MAX_LIGHTS]; // of each light; -1: it casts no shadow
-    LightBlocks *blocks; // filled for the lattice: what the mesh takes away within the box of hair;
-                         // NULL: no mesh
-    bool suns;           // the lights' light is followed, too, not only that of the sky
-    uint32_t step;       // of so many strands one stands for all in the cells; 0: 1
-    int cells;           // along the longest side of the box, 4 .. 64
-    int orders; // of scattering that are swept at most, 0 .. 32; 0: the sky's own light alone
+    float to_eye[3];        // unit, world: opposite to the camera's direction
+    int map_of[MAX_LIGHTS]; // map of each light; -1: it casts no shadow
+    LightBlocks *blocks;    // how the mesh blocks light within the box of hair; NULL: no mesh
+    bool suns;              // also the light of lights is followed, not only that of the sky
+    uint32_t step; // one strand of each group of this many represents them in the cells; 0: 1
+    int cells;     // along the longest side of the box, 4 .. 64
+    int orders;    // number of swept orders of scattering at most, 0 .. 32; 0: only direct light of
+                   // the sky
 } GridScene;
 
 // Whether there is ambient light (sky or ground).

@@ -31,16 +31,17 @@ typedef enum LookFeature {
 enum { LOOK_SHADED = 1024, LOOK_VARIANTS = 4 * LOOK_SHADED };
 
 typedef struct Look {
-    MaterialParams material;               // complete but for the batch's size
-    unsigned features;                     // LookFeature bits
-    int light_count;                       // of the scene
-    int map_count;                         // lights that have a shadow map
-    unsigned scatter;                      // LOOK_MARSCHNER: the 3D texture of scatter_tables.h ...
-    FibreTable table;                      // ... and its values
-    float mean_color[3];                   // of the hair, linear RGB
-    const struct ParticleLight *scattered; // [batches], of shaders: LOOK_SCATTERED
+    MaterialParams material; // complete except for the members that depend on the batch
+    unsigned features;       // LookFeature bits
+    int light_count;         // of the scene
+    int map_count;           // lights that have a shadow map
+    unsigned scatter;        // LOOK_MARSCHNER: the 3D texture of scatter_tables.h
+    FibreTable table;        // the values of that texture
+    float mean_color[3];     // of the hair, linear RGB
+    const struct ParticleLight *scattered; // [batches], for shaders: LOOK_SCATTERED
     uint32_t batches;
-    float share; // of the strands is drawn, 0 .. 1; the material's radius makes up for it
+    float share; // share of the strands that is drawn, 0 .. 1; the material's radius compensates
+                 // for it
 } Look;
 
 // The look's material with the members that depend on the batch, as if the batch were drawn in one

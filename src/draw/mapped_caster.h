@@ -12,10 +12,10 @@
 typedef struct MappedCaster {
     const float (*position)[4];
     const uint32_t (*paint)[4];            // see hair_paint.h; NULL: none
-    const float (*points)[3][STRAND_TILE]; // [tile][point], once found; NULL: none
-    const uint32_t *order;                 // of tiles; NULL: that of their numbers
+    const float (*points)[3][STRAND_TILE]; // [tile][point], if they are kept; NULL: none
+    const uint32_t *order;                 // the order of tiles; NULL: ascending
     MaterialParams material;               // smooth_parts at least 1
-    float weight;                          // strands that each stands for in shadow maps; 0: 1
+    float weight; // number of strands that each represents in shadow maps; 0: 1
 } MappedCaster;
 
 typedef struct MappedCasters {

@@ -9,7 +9,7 @@
 
 // Hair of one section. `each`: the number of strands that each strand represents (1 + followers).
 typedef struct OpennessHair {
-    const Strands *strands; // m, the mesh's frame
+    const Strands *strands; // m, in the mesh's frame
     float radius;           // m
     float each;
 } OpennessHair;

@@ -15,7 +15,7 @@ typedef struct Renderer {
     RendererOptions options; // `raster` is decided
     Tiles tiles;             // of the image; one: it is drawn at once
     RendererOptions part;    // the options with the size of a tile
-    Image tile;              // owned; no pixels: there is one only
+    Image tile;              // owned; without pixels if there is only one tile
     const Gpu *gpu;
     GpuTimer *timer;
     const DrawBackend *backend;
@@ -24,8 +24,8 @@ typedef struct Renderer {
     DrawnHair *hair; // [hair_room], owned
     uint32_t hair_room;
     HairRead read;
-    Drawing drawing;    // the last one
-    BackendFrame frame; // the same
+    Drawing drawing;    // of the last image
+    BackendFrame frame; // of the last image
     RendererCounts counts;
 } Renderer;
 

@@ -16,45 +16,44 @@ typedef struct HeadPose HeadPose; // sim/head.h
 // Level of detail. All zero: all strands are drawn. The strands of a file lie in random order, so
 // the first ones represent the whole.
 typedef struct LodOptions {
-    float start, end; // m: between these distances of the camera from a section's middle the share
-                      // falls from 1 to `least`; end 0: at none
+    float start, end; // m: between these distances of the camera from a section's middle, the share
+                      // of drawn strands falls from 1 to `least`; end 0: it does not fall
     float least;      // share, 0 .. 1
-    float width;      // px: narrower fibres are fewer and as wide as this; 0: are left as they are
+    float width;      // px: thinner fibres are drawn this wide, but fewer of them; 0: unchanged
 } LodOptions;
 
 // Options of the light from fibre to fibre.
 typedef struct ScatterOptions {
-    Scatter kind;     // none: only light of the sky
+    Scatter kind;     // none: only direct light of the sky
     int cells;        // along the longest side of the hair, 4 .. 64; 0: 32
-    int orders;       // that are followed, 1 .. 32; 0: 16
-    uint32_t strands; // that stand for all in the cells, at least; 0: all
-    bool off;         // set by scatter_options: no light is found
+    int orders;       // number of orders of scattering, 1 .. 32; 0: 16
+    uint32_t strands; // number of strands that represent all in the cells, at least; 0: all
+    bool off;         // set by scatter_options: no light is computed
 } ScatterOptions;
 
 typedef struct RendererOptions {
-    Raster raster;        // how hair becomes pixels; auto: blocks on CPU drivers, else compute
-    int width, height;    // px; what no framebuffer holds is drawn as tiles
+    Raster raster;        // auto: blocks with CPU drivers, compute otherwise
+    int width, height;    // px; images larger than a framebuffer are drawn as tiles
     float background[4];  // sRGB and opacity 0..1; below 1 the images have an alpha channel
-    float exposure;       // all light but the background's is this many times doubled
-    Tone tone;            // how light becomes colour; the background's does not change
+    float exposure;       // EV: factor 2^exposure of all light except the background's
+    Tone tone;            // tone curve of all light except the background's
     ImageKind kind;       // of the images
-    Aov aov;              // what is drawn instead of light, on black (docs/look.md)
-    float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; alike: m themselves
-    int samples;   // 1, 2 or 4: a pixel is the mean of samples x samples, each with lists of its
-                   // own; 0: 1. AOVs of what is nearest have one
-    uint32_t seed; // of what varies by strand
+    Aov aov;              // auxiliary image that replaces light, on black (docs/look.md)
+    float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; if equal: depths in m
+    int samples; // 1, 2 or 4: a pixel is the mean of samples x samples samples with separate lists;
+                 // 0: 1. AOVs of the nearest ribbon have one sample
+    uint32_t seed; // of random variations by strand
     ShadowOptions shadow;
     ScatterOptions scatter; // needs deep shadow maps
     Floor floor;            // not with an AOV
     MeshShading mesh_shading;
     LodOptions lod;
-    Oit oit;          // how the fragments of a pixel are blended; auto: abuffer. Else quads are
-                      // what raster auto is
-    float least_seen; // blocks: share of a pixel that must be seen of a ribbon before it is shaded,
-                      // 0 .. 0.5
-    int oit_layers;   // abuffer: how many of them in order, 1 .. 64, the same; 0: 8, of two
-                      // samples 16
-    int64_t pool_bytes; // no larger A-buffer; 0: what the driver allows
+    Oit oit; // how the fragments of a pixel are blended; auto: abuffer. Others than auto make
+             // raster auto choose quads
+    float least_seen;   // blocks: ribbons are shaded only if this share of a pixel is visible of
+                        // them, 0 .. 0.5
+    int oit_layers;     // abuffer: number of layers in order, 1 .. 64; 0: 8, with two samples 16
+    int64_t pool_bytes; // maximum size of the A-buffer; 0: the driver's limit
 } RendererOptions;
 
 // Options from the parameters of a run. Exposure, tone, kind, AOV, floor and the mesh's shading
@@ -102,6 +101,6 @@ typedef struct RendererCounts {
     uint32_t
         redraws;    // bands that were drawn again because the A-buffer or the lists were too small
     uint32_t bands; // horizontal bands that the image was drawn in
-    uint64_t thinned;     // strands that others stand for, at their distance
+    uint64_t thinned;     // strands that others represent because of their distance
     uint32_t shadow_maps; // that were made; those of the image before may have done
 } RendererCounts;

@@ -16,12 +16,13 @@ bool scatter_is_wanted(const ScatterOptions *options, const BackendFrame *frame)
 // Whether lights and sky are the same.
 bool scatter_same_lights(const DrawParams *a, const DrawParams *b);
 
-// One of so many strands is used in the cells and represents the others.
+// The group size: one strand of each group of this many is used in the cells and represents them
+// all.
 uint32_t scatter_step(const ScatterOptions *options, const BackendFrame *frame);
 
 // The scene of a frame with these shadow maps. The caller fills in hair, kinds and mesh.
 GridScene scatter_scene(const ScatterOptions *options, const BackendFrame *frame,
                         const ShadowParams *shadows);
 
-// The mesh at the head's place in this frame.
+// The mesh, placed by the head's motion in this frame.
 LightMesh scatter_mesh(const BackendFrame *frame);

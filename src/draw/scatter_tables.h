@@ -11,7 +11,7 @@
 
 typedef struct ScatterTable ScatterTable;
 
-// Those that somebody uses. Begins with {.stock = gpu->tables}.
+// The tables in use. Initialise with {.stock = gpu->tables}.
 typedef struct ScatterTables {
     Stock *stock;
     ScatterTable **taken; // [count], owned
@@ -26,5 +26,5 @@ void scatter_tables_destroy(ScatterTables *tables);
 
 // 3D, RGBA16F: R, TT, TRT by azimuth, cosine of theta_d and colour (draw.h).
 unsigned scatter_table_texture(const ScatterTable *table);
-// The same values, of which the first call waits for the GPU.
+// The same values in memory. The first call waits for the GPU.
 Result scatter_table_read(ScatterTable *table, FibreTable *values, Error *error);

@@ -11,25 +11,24 @@
 #include "glsl/draw/shadow.h"
 
 typedef struct ShadowOptions {
-    Shadow kind;   // not none
+    Shadow kind;   // must not be none
     int side;      // texels across a map of hair, rounded up to a multiple of 8
-    float spacing; // approx: between fibres along the light, in radii
-    int strands;   // in maps by lanes: no fewer than these stand for all; 0: all
+    float spacing; // approx: distance between fibres along the light, in radii
+    int strands;   // lanes: number of strands that represent all in maps, at least; 0: all
 } ShadowOptions;
 
-// A mesh at the head's place in this frame. Zeroed: none.
+// A mesh, placed by the head's motion in this frame. Zeroed: no mesh.
 typedef struct ShadowMesh {
-    uint64_t version;                  // another one for each other mesh; 0: there is none
+    uint64_t version;                  // differs between meshes; 0: no mesh
     float low[3], high[3];             // its box in its own frame, m
     float rotation[4], translation[3]; // to the world; m
 } ShadowMesh;
 
-// Everything that maps depend on. Two keys of the same bytes and of a revision that is not 0 have
-// the same maps.
+// Everything that maps depend on. Equal keys whose revision is not 0 have equal maps.
 typedef struct ShadowKey {
     Light lights[SCENE_MAX_LIGHTS];
     uint32_t light_count;
-    uint64_t revision; // of the positions of hair: another one wherever they differ
+    uint64_t revision; // of the positions of hair: changes whenever they change
     uint64_t hair;     // a hash of the looks of all batches
     ShadowMesh mesh;
 } ShadowKey;
@@ -46,12 +45,13 @@ typedef struct ShadowFrames {
     // The lights that cast shadows.
     LightView views[SCENE_MAX_LIGHTS];
     int lights[SCENE_MAX_LIGHTS], count;
-    // Sums over all hair: particles, with their radii and opacities, and what segments may add to a
-    // texel, of hair whose width is its material's, also times its diameter, and of other hair.
+    // Sums over all hair: number of particles, their radii and opacities; and upper bounds of what
+    // segments add to a texel: of hair with its material's width, of that times its diameter, and
+    // of other hair.
     double particles, radius, opacity, plain, plain_width, painted;
-    // Of shadow_frames_place.
+    // Set by shadow_frames_place.
     ShadowParams params;
-    CastParams casts[MAX_LIGHTS]; // by which hair is laid into each map
+    CastParams casts[MAX_LIGHTS]; // how hair is drawn into each map
 } ShadowFrames;
 
 // Begins a scene with the views of the lights that cast shadows. Lamps look at `middle` (m, world).

@@ -19,10 +19,10 @@
 // Input for an image. Boxes are in samples: x, y lowest, highest; outside of them is background.
 typedef struct LaneBaseScene {
     PlacedMesh mesh;       // no triangles: none
-    uint64_t mesh_version; // another one wherever the mesh's own positions or normals differ
+    uint64_t mesh_version; // changes when the mesh's positions or normals change in its own frame
     MeshShading shading;
     const Floor *floor;
-    const LaneShadow *shadow; // what mesh and floor receive; NULL: none
+    const LaneShadow *shadow; // shadows on mesh and floor; NULL: none
     const DrawParams *draw;
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } LaneBaseScene;
@@ -30,19 +30,19 @@ typedef struct LaneBaseScene {
 // A zeroed struct is empty.
 typedef struct LaneBase {
     MeshRaster raster;
-    MeshSurface surface; // from sample `low` of the image on
+    MeshSurface surface; // starts at sample `low` of the image
     int low[2];
-    float *lit; // [3][lit_room / 3], owned: linear light of the surface, in rows as it has them
+    float *lit; // [3][lit_room / 3], owned: linear light of the surface, in rows like the surface's
     size_t lit_room;
     uint16_t (*light)[4]; // [room], owned, as `depth`: of `shown`
     float *depth;
     size_t room;
-    BlockBase shown;                 // what was drawn last
-    DrawParams drawn;                // it shows these
-    uint64_t mesh_version, shadowed; // the latter: LaneShadow.version
+    BlockBase shown;                 // the last result
+    DrawParams drawn;                // its parameters
+    uint64_t mesh_version, shadowed; // for which it was drawn; `shadowed`: LaneShadow.version
     bool any;
-    uint64_t version;       // counts the times that anything was drawn
-    uint64_t depth_version; // counts the times that depths were
+    uint64_t version;       // incremented when anything was drawn
+    uint64_t depth_version; // incremented when depths were drawn
 } LaneBase;
 
 // Draws `shown`, unless it shows this scene already. RESULT_FAILED if memory is short.

@@ -8,16 +8,16 @@
 
 #include "glsl/common/shared_math.h"
 
-enum { FLOOR_TAPS = 6 }; // as soft as shadows of hair, whose maps are coarser
+enum { FLOOR_TAPS = 6 }; // as soft as shadows on hair, whose maps are coarser
 
 typedef struct BaseFloor {
-    FloorKind kind; // none: it is not seen
+    FloorKind kind; // none: no floor is visible
     const LaneShadow *shadow;
     float middle[3], whole, faded, hides;
     float color[3]; // linear
 } BaseFloor;
 
-// A floor is seen from above only.
+// A floor is visible from above only.
 static inline BaseFloor base_floor(const Floor *floor, const LaneShadow *shadow,
                                    const DrawParams *draw)
 {
@@ -33,8 +33,8 @@ static inline BaseFloor base_floor(const Floor *floor, const LaneShadow *shadow,
 
 typedef struct BaseFloorPoints {
     float x[3][W];            // m
-    float off[W];             // m from its middle; INFINITY where the way does not lead to it
-    float there[W], depth[W]; // how much of it is left, and where (0 .. 1)
+    float off[W];             // m from the floor's middle; INFINITY if the ray does not meet it
+    float there[W], depth[W]; // the floor's opacity and depth there (0 .. 1)
 } BaseFloorPoints;
 
 // Finds the points of the floor that 16 px from (x, y) on show. Returns whether there are any.
@@ -95,7 +95,7 @@ SIMD_INLINE void base_floor_shade(const BaseFloor *floor, const BaseView *view,
     }
 }
 
-// A plane hides what lies behind it where at least half of it is left.
+// A plane hides what is behind it if at least half of it is opaque.
 SIMD_INLINE void base_floor_hide(const BaseFloor *floor, const BaseFloorPoints *points,
                                  float depth[W])
 {

@@ -7,13 +7,13 @@
 // The lists of an image of columns x rows blocks of BLOCK_WIDTH x BLOCK_HEIGHT px (draw.h).
 typedef struct Bins {
     int columns, rows;
-    int part_room;    // how many parts a projection may have: the threads when it was created
-    uint32_t *places; // [parts][rows * columns], owned: ribbons in a block, later where the next
-                      // one goes
-    size_t *begins;   // [rows * columns + 1], owned: where a block's list begins
+    int part_room;    // largest number of parts of a projection: the threads when it was created
+    uint32_t *places; // [parts][rows * columns], owned: number of ribbons in a block, later the
+                      // position of its next ribbon
+    size_t *begins;   // [rows * columns + 1], owned: start of each block's list
     uint64_t *pairs; // [pair_room], owned: ~depth in the upper half, the ribbon's slot in the lower
     size_t pair_room;
-    size_t longest; // list
+    size_t longest; // length of the longest list
 } Bins;
 
 // RESULT_FAILED when memory is short.

@@ -17,7 +17,7 @@ enum {
 
 typedef struct __attribute__((aligned(32))) Cell {
     float red[CELL_PIXELS], green[CELL_PIXELS], blue[CELL_PIXELS];
-    float through[CELL_PIXELS]; // share of what stands behind that is seen
+    float through[CELL_PIXELS]; // transmittance: the visible share of what is behind
 } Cell;
 
 // How ribbons hide each other. OPEN, OVER_MESH: they are blended; OVER_MESH: only before the mesh
@@ -28,7 +28,8 @@ typedef enum BlockForm { BLOCK_OPEN, BLOCK_OVER_MESH, BLOCK_NEAREST, BLOCK_FORMS
 // A block's pixels, `cells` row by row, its first pixel's column and row.
 typedef struct Block {
     Cell *cells;
-    float (*hidden)[CELL_PIXELS]; // 1/w of what hides all behind it; 0: nothing
+    // 1/w of the opaque surface behind which nothing is visible; 0: none
+    float (*hidden)[CELL_PIXELS];
     int x, y;
 } Block;
 

@@ -14,8 +14,8 @@
 typedef struct Ribbons {
     const ScreenPoint *points;
     Shader shader;
-    float least_seen; // share of a pixel: ribbons of which less is seen are not shaded, but look
-                      // like the others; twice as much stands in for what is behind
+    float least_seen; // share of a pixel: ribbons of which less is visible are not shaded but get
+                      // the colour of the others; twice that share may be added for what is behind
 } Ribbons;
 
 // The memory that a thread needs.

@@ -13,11 +13,11 @@ enum { HIDDEN_SQUARE = 8 }; // px
 // A zeroed struct hides nothing.
 typedef struct Hidden {
     int columns, rows;
-    float *nearest; // [rows][columns], owned: 1/w of the farthest that is opaque in a square and in
-                    // the eight around it; 0: something can be seen past it
-    float *own;     // the same of the square alone
+    float *nearest; // [rows][columns], owned: 1/w of the farthest opaque surface in a square and
+                    // the eight around it; 0: not all of them is opaque
+    float *own;     // the same for the square alone
     size_t room;
-    uint64_t version; // LaneBase.depth_version that it was found for
+    uint64_t version; // LaneBase.depth_version for which it was computed
 } Hidden;
 
 // Fills in the depths for an image of width x height px with this base. RESULT_FAILED if memory is

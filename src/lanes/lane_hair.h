@@ -12,18 +12,18 @@
 // One batch.
 typedef struct LaneHair {
     MappedCaster caster;
-    const uint32_t *ids;         // [slots]: seeds of what varies by strand
+    const uint32_t *ids;         // [slots]: seeds of random variations by strand
     const struct LaneLook *look; // how it is shaded, see shade.h
-    uint32_t points;             // of a strand: its particles, or those of its curve
-    size_t tiles, first_tile;    // of STRAND_TILE strands; those of the batches before
-    size_t first_point;          // points of the batches before: [strand][point]
+    uint32_t points;             // per strand: its particles, or the points of its curve
+    size_t tiles, first_tile; // number of tiles of STRAND_TILE strands, and of all previous batches
+    size_t first_point;       // number of points of all previous batches: [strand][point]
 } LaneHair;
 
 // All hair of an image.
 typedef struct LaneHairs {
     const LaneHair *list;
     uint32_t count;
-    size_t tiles, points; // of all: points less than 2^32
+    size_t tiles, points; // of all batches: points less than 2^32
 } LaneHairs;
 
 // Point k of a strand, m: from the table of points, or, if there are too many points to keep,

@@ -19,13 +19,13 @@ typedef struct LaneBatch {
 
 typedef struct Lanes {
     BackendOptions set;
-    const RendererOptions *options; // of a window
+    const RendererOptions *options; // for a window
     ScatterOptions scatters;
     LaneShadow shadow;
     LaneScatter scatter;
     LaneBase base;
     Hidden hidden;
-    bool draws_hidden; // ribbons behind what hides them, too, so that tests can tell
+    bool draws_hidden; // also draws hidden ribbons, for tests
     ShadowPoints points;
     Projection projection;
     Shades shades;

@@ -38,9 +38,10 @@ typedef struct GridItem {
 // The light that fibres in cells send to the eye, in patches of tangents (kernel/cell.h). The
 // thread whose point first asks for a patch computes it.
 typedef struct GridPatches {
-    _Atomic int *of; // [kinds][active + 1][CELL_PATCHES]: number + 1 of the patch; 0: not found
-    float (*seen)[CELL_PATCH_NODES][4]; // [room]: red, green, blue and nothing
-    _Atomic int count;                  // more than room: the others are found each time
+    _Atomic int *of; // [kinds][active + 1][CELL_PATCHES]: number + 1 of the patch; 0: not computed
+                     // yet
+    float (*seen)[CELL_PATCH_NODES][4]; // [room]: red, green, blue and an unused number
+    _Atomic int count;                  // may exceed room: further patches are computed each time
     int room;
     size_t of_room;
 } GridPatches;
@@ -52,8 +53,8 @@ typedef struct LightGridState {
     float mesh_color[3]; // linear RGB
     size_t cell_room, span_room, item_room, slot_room, filled_room;
 
-    int *slot;            // [cells]: -1: nobody asks
-    uint32_t *first_item; // [parts][cells], then of the whole
+    int *slot;            // [cells]: -1: not needed
+    uint32_t *first_item; // [parts][cells], then for all parts together
     uint32_t *items;      // words of GridItem
     int *cell_of;         // [active]
     uint32_t item_count;
@@ -63,19 +64,19 @@ typedef struct LightGridState {
     float *passage;  // [groups][filled][3][lanes]: exp(-tau), (1 - exp(-tau)) / tau, and tau
     float *source;   // [groups][filled][GROUP_WIDE]: S
     float *order;    // [groups][active][GROUP_WIDE]: L of the last order
-    float *sum;      // [groups][active][GROUP_WIDE]: L of all orders so far
-    float *light;    // [active + 1][GRID_WIDE]: L of all, and what comes from around
-    float *hidden;   // [active + 1][4]: mean light, and 1 where it will do
-    float *glow;     // [filled][3]: what the mesh sends back of a cell's light, linear RGB
-    float *tint;     // [filled][3]: albedo over that of the kind
+    float *sum;      // [groups][active][GROUP_WIDE]: sum of L over all orders so far
+    float *light;    // [active + 1][GRID_WIDE]: L of all orders and of the environment
+    float *hidden;   // [active + 1][4]: mean light, and 1 if it suffices
+    float *glow;     // [filled][3]: share of a cell's light that the mesh reflects, linear RGB
+    float *tint;     // [filled][3]: ratio of the albedo to the kind's
     int *class;      // [filled]: main tangent and kind
     float *planes;   // [groups][3][plane]: two slices, and rows
     size_t plane;    // floats
-    GridSpan *spans; // [groups][slices][rows]: what a sweep visits, see light_grid_spans.c
-    bool closing;    // what further orders add is added
+    GridSpan *spans; // [groups][slices][rows]: cells that a sweep visits, see light_grid_spans.c
+    bool closing;    // the light of further orders is extrapolated
     double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
 
-    float eye[3]; // m, lattice's axes: that GridPatches are for
+    float eye[3]; // m, in the lattice's axes: the eye of GridPatches
     GridPatches *patches;
 } LightGridState;
 

@@ -9,12 +9,12 @@
 
 enum {
     W = 16,
-    STEPS = 256, // in a px
-    BAND = 16,   // rows that a thread takes at once
+    STEPS = 256, // per px
+    BAND = 16,   // rows that a thread processes at once
     PLACES = 1 + MESH_EDGES,
     NORMAL = 2,
     TINT = NORMAL + 3,
-    VALUES = TINT + 3 // of a vertex: depth, 1/w, normal / w, tint / w
+    VALUES = TINT + 3 // per vertex: depth, 1/w, normal / w, tint / w
 };
 
 // The places of the middle sample and of the edge samples in a pixel (1/256 px). The edge samples
@@ -24,8 +24,8 @@ static const int PLACE[PLACES][2] = {{128, 128}, {96, 32}, {224, 96}, {32, 160},
 // The planes that are written.
 typedef struct MeshPlanes {
     int width, height, pitch, parts;
-    float *depth[PLACES]; // [height][pitch]; for depths alone the first
-    float *value[VALUES]; // the same, of middles; not [0]
+    float *depth[PLACES]; // [height][pitch]; only the first if only depths are written
+    float *value[VALUES]; // the same at pixels' middles; [0] is unused
 } MeshPlanes;
 
 typedef struct Corner {
@@ -95,7 +95,7 @@ static bool any_is_mine(const MeshPlanes *to, int part, const int rows[2])
            (part - first % to->parts + to->parts) % to->parts <= last - first;
 }
 
-// One sample of 16 px: writes the depth where the triangle is nearer, and says where it was.
+// One sample of 16 px: writes the depth where the triangle is nearer, and returns where.
 SIMD_INLINE void fill_place(const int edge[3], const int (*steps)[W], float from, float step,
                             float *depth, int hit[W])
 {
@@ -110,8 +110,8 @@ SIMD_INLINE void fill_place(const int edge[3], const int (*steps)[W], float from
 // A triangle, ready to be filled from px `first` of row `top` on.
 typedef struct Setup {
     int first, top, last[2];             // last column and row
-    int steps[3][W];                     // see set_up: what lanes add to each edge
-    int64_t edges[W], down[W], along[W]; // [place][3]: of the first px; a row, 16 px on
+    int steps[3][W];                     // see set_up: offsets of lanes for each edge
+    int64_t edges[W], down[W], along[W]; // [place][3]: at the first px; change per row, per 16 px
     float depth[PLACES], value[VALUES];  // at the first px
     Slope slopes[VALUES];                // for each px
 } Setup;

@@ -14,7 +14,7 @@
 // A mesh at its place in one frame.
 typedef struct PlacedMesh {
     const float (*position)[3];    // [vertex_count], m, the mesh's frame
-    const float (*normal)[3];      // [vertex_count], unit; for depths alone NULL
+    const float (*normal)[3];      // [vertex_count], unit; NULL if only depths are drawn
     const float *open;             // [vertex_count], share of the sky; NULL: 1
     const float (*tint)[3];        // [vertex_count], factors of the colour; NULL: 1
     const uint32_t (*triangle)[3]; // [triangle_count]
@@ -26,7 +26,7 @@ typedef struct PlacedMesh {
 typedef struct MeshRaster {
     int (*place)[2];   // [room], owned: 1/256 px
     float *value[8];   // [room], owned: depth, 1 over w, normal over w, tint over w
-    unsigned char *on; // [room], owned: the planes of the view's box that a vertex is beyond
+    unsigned char *on; // [room], owned: bits of the view box's planes that the vertex is outside of
     size_t room;
 } MeshRaster;
 
@@ -47,12 +47,12 @@ enum {
 // The mesh's nearest surface in a window. A zeroed struct is empty.
 typedef struct MeshSurface {
     int width, height, pitch; // px, of rows in memory: a multiple of 16
-    float *depth;             // [height][pitch], owned like all: in middles, 1: nothing
+    float *depth;             // [height][pitch], owned like all: at pixels' middles, 1: nothing
     float *edge[MESH_EDGES];  // depths at the other samples
-    // In middles where there is mesh, all over w: 1; the normal, which is as long as the share of
-    // the sky; the tint.
+    // At middles with mesh, all over w: 1; the normal, whose length is the share of the sky; the
+    // tint.
     float *inverse, *normal[3], *tint[3];
-    float *memory; // of all these
+    float *memory; // of all arrays
     size_t room;
 } MeshSurface;
 

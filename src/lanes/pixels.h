@@ -9,10 +9,10 @@
 
 // How light becomes colours of the image.
 typedef struct PixelStyle {
-    int samples;      // across a pixel: 1, 2 or 4
+    int samples;      // per pixel side: 1, 2 or 4
     int tone;         // Tone or TONE_LIGHT
-    bool shows_depth; // of the nearest ribbon or mesh, m, in place of light: 1 at depth_range[0],
-                      // 0 at [1]; alike: m
+    bool shows_depth; // shows the nearest ribbon's or mesh's distance in m instead of light: 1 at
+                      // depth_range[0], 0 at [1]; if these are equal: m
     float depth_range[2];
     float background[4]; // light, premultiplied, and opacity
     float depth[2];      // clip z = x * w + y

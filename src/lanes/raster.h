@@ -10,17 +10,17 @@
 typedef struct LaneRaster {
     Bins bins;
     uint64_t *sorting[PARALLEL_MOST]; // [sorting_room]
-    Cell *cells[PARALLEL_MOST];       // [BLOCK_CELLS], then what hides their pixels
+    Cell *cells[PARALLEL_MOST];       // [BLOCK_CELLS], then the depths that hide their pixels
     CompositeScratch *scratch[PARALLEL_MOST];
     size_t sorting_room;
 } LaneRaster;
 
-// Input for an image: its ribbons, and what they are composited over.
+// Input for an image: its ribbons, and the base behind them.
 typedef struct RasterScene {
     Ribbons ribbons;
-    const BlockBase *base; // NULL: nothing
+    const BlockBase *base; // NULL: background only
     PixelStyle style;
-    bool nearest; // ribbons hide what is behind them, see BlockForm
+    bool nearest; // nearer ribbons hide others completely, see BlockForm
     Image *image;
 } RasterScene;
 

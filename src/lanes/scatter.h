@@ -13,14 +13,14 @@ typedef struct LaneScatter {
     LightGrid grid;
     LightBlocks blocks;
     FibreKinds kinds;
-    GridHair *hair; // [room], owned: with kinds, also where no light is found
+    GridHair *hair; // [room], owned: with kinds, also if no light is computed
     uint32_t count, room;
-    uint64_t shadow_version; // of the maps that the light was found by
+    uint64_t shadow_version; // of the maps used for the light
     DrawParams drawn;
     bool any;
 } LaneScatter;
 
-// Computes the light, unless that of the last frame is still right, and prepares it for this eye.
+// Computes the light, unless that of the last frame is still valid, and prepares it for this eye.
 // `casters`: of the frame's hair. *shown: whether there is any light among hair. RESULT_FAILED if
 // memory is short.
 Result lane_scatter_draw(LaneScatter *scatter, const ScatterOptions *options,

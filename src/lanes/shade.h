@@ -25,21 +25,21 @@ typedef enum LaneModel {
 // How a section's hair is shaded.
 typedef struct LaneLook {
     LaneModel model;
-    const TintTable *tints;  // of marschner; NULL: strands differ by more than brightness
+    const TintTable *tints;  // of marschner; NULL: strands differ in more than brightness
     const float (*table)[4]; // of marschner: see FibreTable
-    int kind;                // of marschner: of the fibres, in `grid`
+    int kind;                // of marschner: the fibres' kind in `grid`
 } LaneLook;
 
 // All light of an image.
 typedef struct LaneLight {
     const DrawParams *draw;
     const LaneShadow *shadow; // NULL: none
-    const LightGrid *grid;    // the light among hair; NULL: none is found
+    const LightGrid *grid;    // the light among hair; NULL: it is not computed
 } LaneLight;
 
 // The shaded points of an image. A zeroed struct is empty.
 typedef struct Shades {
-    _Atomic uint64_t *points; // [hairs->points], owned: three levels, and the image's number
+    _Atomic uint64_t *points; // [hairs->points], owned: three levels, and the number of the image
     size_t room;
     uint16_t image;
 } Shades;

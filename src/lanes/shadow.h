@@ -20,24 +20,25 @@
 typedef struct LaneShadowScene {
     const Light *lights;
     uint32_t light_count;
-    MappedCasters casters;           // their `order` and `points` are not looked at
-    const struct PlacedMesh *mesh;   // that stands in the light (mesh_raster.h); NULL: none
-    float mesh_low[3], mesh_high[3]; // its box in its own frame, m
-    uint64_t mesh_version;           // another one for each other mesh, > 0
-    float middle[3];                 // m, world: what lamps look at
-    uint64_t revision;               // another one wherever positions differ; 0: never the same
+    MappedCasters casters;           // their `order` and `points` are ignored
+    const struct PlacedMesh *mesh;   // casts shadows (mesh_raster.h); NULL: none
+    float mesh_low[3], mesh_high[3]; // box of the mesh in its own frame, m
+    uint64_t mesh_version;           // differs between meshes, > 0
+    float middle[3];                 // m, world: the lamps' target
+    uint64_t revision;               // changes whenever positions change; 0: always differs
 } LaneShadowScene;
 
 typedef struct LaneShadow {
     ShadowOptions options;
     ShadowParams params;              // params.maps of them
-    int map_of[MAX_LIGHTS];           // of each light; -1: it has none
-    float light_place[MAX_LIGHTS][4]; // of each map's light: unit, towards it, with 0; or m, with 1
-    uint64_t version;                 // counts the times that maps were made
-    int maps_drawn;                   // by the last lane_shadow_draw
-    bool any, by_mesh;                // there are maps; of the mesh, too
+    int map_of[MAX_LIGHTS];           // map of each light; -1: none
+    float light_place[MAX_LIGHTS][4]; // of each map's light: unit direction towards it and 0; or
+                                      // position in m and 1
+    uint64_t version;                 // incremented when maps are made
+    int maps_drawn;                   // number of maps drawn by the last lane_shadow_draw
+    bool any, by_mesh;                // whether there are maps; whether maps of the mesh
     ShadowMap map;
-    // Owned, with room for so many maps: as shadow_map_draw makes them; layers NULL: approx.
+    // Owned, with room for `room` maps, in the form of shadow_map_draw; layers NULL: approx.
     float *depths;    // [map][side][side]
     uint32_t *layers; // [map][side][tile][SHADOW_LAYERS][SHADOW_MAP_TILE]
     int room;
@@ -58,7 +59,7 @@ Result lane_shadow_draw(LaneShadow *shadow, const LaneShadowScene *scene, Error 
 
 enum { SHADOW_LOOK = STRAND_TILE }; // points
 
-// Places of points in a map of hair; `inside`: in the map and before the light.
+// Positions of points in a map of hair; `inside`: inside the map and in front of the light.
 typedef struct ShadowLook {
     float u[SHADOW_LOOK], v[SHADOW_LOOK], z[SHADOW_LOOK], inside[SHADOW_LOOK];
 } ShadowLook;
@@ -99,7 +100,7 @@ SIMD_INLINE void shadow_look_deep(const LaneShadow *shadow, int map, const Shado
                             u[k], v[k]);
     }
     for (int k = 0; k < N; ++k) {
-        // layer_of, but for a bound that compilers know and then jump by
+        // equals layer_of, with a bound that compilers can't know, or they would add jumps
         float root = sqrtf(simd_positive(look->z[k] - begin[k])),
               layer = simd_min((float)SHADOW_LAYERS * root, last);
         int whole = (int)layer, first = row[k] * pitch + whole * S, to = column[k] + 1;
@@ -339,7 +340,7 @@ SIMD_INLINE void lane_shadow_left_of(const LaneShadow *shadow, int map,
     if (!shadow->by_mesh) return;
     float past[SHADOW_LOOK], covered[SHADOW_LOOK];
     shadow_look_mesh(shadow, map, x, 2, past, covered);
-    for (int k = 0; k < SHADOW_LOOK; ++k) { // nothing stands between a lamp and what is behind it
+    for (int k = 0; k < SHADOW_LOOK; ++k) { // there is no shadow behind a lamp
         float w = before[0] * x[0][k] + before[1] * x[1][k] + before[2] * x[2][k] + before[3];
         left[k] *= w > 0 ? past[k] : 1;
     }

@@ -19,11 +19,11 @@ enum {
 typedef struct ShadowMap {
     int side, coarse; // texels across a map and across that of the first depths
     int tiles;        // SHADOW_MAP_TILEs in a row
-    int wide;         // of `sums`, from row to row of a layer: rows must not share lines of caches
+    int wide; // row length of `sums` in a layer, chosen so that rows do not share cache lines
     bool deep;
     int parts;
-    float last;     // LAYER_END: a bound that compilers know makes them jump
-    int at_once;    // maps that there is room for in what follows
+    float last;     // LAYER_END: not a constant, because compilers would add jumps
+    int at_once;    // number of maps that the arrays below have room for
     float *first;   // [parts][at_once][coarse][coarse], owned; 1: no hair
     uint32_t *sums; // [parts][at_once][side][SHADOW_LAYERS][wide], owned, deep
     float *least;   // [parts][4][coarse + 4], owned, deep: for shadow_finish.c
@@ -35,8 +35,8 @@ typedef struct ShadowMap {
 Result shadow_map_create(ShadowMap *shadow, int side, bool deep, Error *error);
 void shadow_map_destroy(ShadowMap *shadow);
 
-// Makes room to draw so many maps. As many are drawn at once as fit into 256 MiB. RESULT_FAILED if
-// memory is short.
+// Makes room to draw this many maps. As many are drawn at once as fit into 256 MiB. RESULT_FAILED
+// if memory is short.
 Result shadow_map_reserve(ShadowMap *shadow, int maps, Error *error);
 
 // Words of the layers of one map.

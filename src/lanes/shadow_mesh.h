@@ -8,15 +8,15 @@
 #include "lanes/mesh_raster.h"
 
 enum {
-    SHADOW_MESH_SQUARE = 16, // texels: side of what has one pair of bounds
-    SHADOW_MESH_TAPS = 6     // texels each way that a point looks at, at most
+    SHADOW_MESH_SQUARE = 16, // texels: side of a square with one pair of bounds
+    SHADOW_MESH_TAPS = 6     // texels per axis that a point reads, at most
 };
 
 // A zeroed struct is empty.
 typedef struct LaneMeshShadow {
     float *depths; // [map][SHADOW_MESH_SIDE][SHADOW_MESH_SIDE], owned: 0..1; 1: no mesh
-    // [map][row][column], owned: the least and the greatest depth that a point in the square looks
-    // at: most points lie before or behind all of them
+    // [map][row][column], owned: the smallest and the largest depth that points in the square read:
+    // most points are in front of or behind all of them
     float (*bounds)[2];
     int room; // maps
     MeshRaster raster;

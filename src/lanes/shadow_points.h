@@ -9,7 +9,7 @@
 
 // Zeroed at the start.
 typedef struct ShadowPoints {
-    float (*all)[3][STRAND_TILE]; // [room], owned: of one caster behind the other
+    float (*all)[3][STRAND_TILE]; // [room], owned: of all casters, one after the other
     size_t room;
 } ShadowPoints;
 

@@ -9,7 +9,7 @@
 typedef struct ShadowSample {
     MappedCaster *casters; // [room], owned
     uint32_t room;
-    float (*position)[4]; // [position_room], owned: of one caster behind the other
+    float (*position)[4]; // [position_room], owned: of all casters, one after the other
     uint32_t (*paint)[4]; // [paint_room], owned
     size_t position_room, paint_room;
 } ShadowSample;

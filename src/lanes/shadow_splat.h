@@ -7,10 +7,10 @@
 
 typedef struct ShadowSplat {
     ShadowMap *shadow;
-    const CastParams *params; // [maps]; not deep or coarse: of a map of first depths
+    const CastParams *params; // [maps]; if not deep or coarse: of a map of first depths
     int maps;                 // no more than shadow->at_once
     MappedCasters casters;
-    const float *depths; // [map][side][side]: at which layers begin; NULL: first depths are drawn
+    const float *depths; // [map][side][side]: starts of layers; NULL: first depths are drawn
     bool coarse;         // first depths of a coarse map
 } ShadowSplat;
 

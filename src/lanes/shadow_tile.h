@@ -19,8 +19,8 @@ typedef struct Places {
 typedef struct Tile {
     const MappedCaster *caster;
     size_t number;
-    int strands;                 // that are drawn
-    float radius[W], opacity[W]; // m; to light
+    int strands;                 // number of strands that are drawn
+    float radius[W], opacity[W]; // m; opacity to light
     float share[W];              // a factor of all opacities
 } Tile;
 

@@ -9,7 +9,7 @@
 
 // Zeroed at the start.
 typedef struct TileOrder {
-    uint32_t *all; // [room], owned: of one caster behind the other
+    uint32_t *all; // [room], owned: of all casters, one after the other
     uint32_t *key; // [room], owned
     size_t room;
 } TileOrder;

@@ -13,19 +13,19 @@ typedef struct ABuffer {
     GLuint resolve[2];   // programs: over the background alone, over a mesh
     GLuint vertex_array; // without attributes
     GpuBuffer nodes;     // uvec4, see abuffer.glsl
-    GpuBuffer heads;     // uint a sample of the band
+    GpuBuffer heads;     // a uint per sample of the band
     GpuBuffer counters;  // uint, see COUNTER_WORDS
     GpuBuffer shortage;  // uint: not 0 once a pixel had too many fragments to visit
-    GpuBuffer extent;    // int[4]: screen box of what has to be resolved: x, y lowest, highest, px
-    LateRead counts;     // what a band has stored, on its way back
+    GpuBuffer extent;    // int[4]: screen box to be resolved: x, y lowest, highest, px
+    LateRead counts;     // counts of a band on their way to the CPU
     const GpuLimits *limits;
-    int64_t most_nodes; // that the pool can grow to
-    int shards;         // that the pool is split into: SHARD_COUNT or 1
+    int64_t most_nodes; // largest size of the pool
+    int shards;         // number of parts of the pool: SHARD_COUNT or 1
     int layers, width;  // of the samples
-    int samples;        // across a pixel of the image, which has their mean
+    int samples;        // per pixel side; pixels are means of samples
     int tone;           // display.glsl's macro
-    bool depth;         // pixels show their nearest fragment's depth
-    int most_turns;     // fragments of a pixel that can be visited
+    bool depth;         // pixels show the depth of their nearest fragment
+    int most_turns;     // number of a pixel's fragments that can be visited
 } ABuffer;
 
 // Counts of a band that was drawn.
@@ -47,7 +47,7 @@ Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int 
                       int tone, bool depth, bool software, int64_t pool_bytes, Error *error);
 void abuffer_destroy(ABuffer *abuffer);
 
-// Makes what resolving over a mesh needs, unless it is there.
+// Creates what resolving over a mesh needs, if missing.
 Result abuffer_add_base(ABuffer *abuffer, Error *error);
 
 // The most rows of a band; >= 1 for every image that can be drawn.
@@ -63,14 +63,13 @@ Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error)
 // Begins to read back the counts of the band and of `cull`. RESULT_FAILED if memory is short.
 Result abuffer_send_use(ABuffer *abuffer, const Cull *cull, Error *error);
 
-// Waits for these counts. The A-buffer holds all fragments if abuffer_holds says so. RESULT_FAILED
-// if the counts do not arrive.
+// Waits for these counts; abuffer_holds tells whether the A-buffer holds all fragments.
+// RESULT_FAILED if the counts do not arrive.
 Result abuffer_take_use(ABuffer *abuffer, ABufferUse *use, Cull *cull, Error *error);
 bool abuffer_holds(const ABuffer *abuffer, const ABufferUse *use);
 
-// Makes the pool large enough for `use` and some more; if necessary it uses a single shard from now
-// on, which wastes nothing. If that is still too small, *grown is false and the pool is as large as
-// it can be.
+// Enlarges the pool to more than `use`; if necessary, it uses a single shard from now on, which
+// wastes no memory. If that is still too small, *grown is false and the pool has its largest size.
 Result abuffer_grow(ABuffer *abuffer, const ABufferUse *use, bool *grown, Error *error);
 
 // Writes the pixels inside the extent and the scissor to the target's image, over its base if

@@ -18,28 +18,28 @@
 // A zeroed struct has no mesh.
 typedef struct BaseLayer {
     RenderMesh mesh;
-    MeshShading shading;        // of the mesh; stays the same
-    GLuint light;               // program of the mesh
+    MeshShading shading;        // of the mesh; does not change
+    GLuint light;               // program that lights the mesh
     GLuint finish[2][3];        // programs: with a mesh, and by FloorKind
-    int light_count, map_count; // that these are for
+    int light_count, map_count; // numbers for which these programs were compiled
     bool wide;                  // the same: lights have a radius
     GLuint vertex_array;        // without attributes
-    DrawParams drawn;           // what the target's surface and base show
-    uint64_t shadowed;          // Shadows.version of it
+    DrawParams drawn;           // the parameters of the target's surface and base
+    uint64_t shadowed;          // Shadows.version of that image
     bool any;
-    uint64_t version;       // counts the times that anything was drawn
-    uint64_t depth_version; // counts the times that the target's depth was
+    uint64_t version;       // incremented when anything was drawn
+    uint64_t depth_version; // incremented when the target's depth was drawn
 } BaseLayer;
 
 // Input for an image. Boxes are in samples: x, y lowest, highest; outside of them is background.
 typedef struct BaseScene {
     const Floor *floor;
-    const Shadows *shadow;     // what mesh and floor receive, which is bound
+    const Shadows *shadow;     // shadows on mesh and floor, bound
     const DrawParams *draw;    // uploaded
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } BaseScene;
 
-// Whether there is anything but background.
+// Whether there is mesh or floor.
 bool base_layer_is_needed(const BaseLayer *base, const Floor *floor);
 
 // Sets the number of lights and shadow maps, and whether lights have a radius. Programs for others

@@ -14,16 +14,17 @@
 // A zeroed struct is empty.
 typedef struct Compute {
     ComputeBins bins;
-    // Programs: over the background alone, over mesh or floor. Tiles with ribbons; without.
+    // Programs: [0] over the background alone, [1] over mesh or floor. For tiles with ribbons; for
+    // tiles without.
     GLuint composite[2], behind[2];
     int samples, tone; // see drawing_display
     bool shows_depth, nearest;
     ImageKind kind;
-    int longest;    // pairs of a tile that the driver's loops can visit
-    int most_rows;  // of tiles in a band, for the same reason
-    int band_rows;  // that the next image is drawn in
+    int longest;    // number of a tile's pairs that the driver's loops can visit
+    int most_rows;  // maximum rows of tiles in a band, for the same reason
+    int band_rows;  // rows of the next image's bands
     LateRead late;  // counts of the image
-    bool unsettled; // nobody has looked at them
+    bool unsettled; // the counts have not been checked
 } Compute;
 
 // Counts of an image.
@@ -37,7 +38,7 @@ Result compute_create(Compute *compute, const Gpu *gpu, const RendererOptions *o
                       Error *error);
 void compute_destroy(Compute *compute);
 
-// Makes what drawing over mesh or floor needs, unless it is there.
+// Creates what drawing over mesh or floor needs, if missing.
 Result compute_add_base(Compute *compute, Error *error);
 
 // Composites the projected `ribbons` into the target's image, over its base if the ribbons have

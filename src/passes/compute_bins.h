@@ -14,7 +14,7 @@ typedef struct ComputeBins {
     const GpuLimits *limits;
     GLuint count, place, fill, sort; // programs
     int columns, rows;               // tiles
-    GpuBuffer counts, ends, tiles;   // uint a tile
+    GpuBuffer counts, ends, tiles;   // a uint per tile
     GpuBuffer use;                   // see draw.h
     GpuBuffer pairs, sorted;         // uvec2, [room]
     int64_t room, most_room;         // pairs
@@ -22,8 +22,8 @@ typedef struct ComputeBins {
 
 // Counts of a band of tiles.
 typedef struct ComputeUse {
-    uint64_t pairs;   // at least; exactly where there is room for them
-    uint32_t longest; // pairs of a tile
+    uint64_t pairs;   // exact if there was room for them, otherwise a lower bound
+    uint32_t longest; // pairs of the longest list
 } ComputeUse;
 
 // For an image of width x height px. `pool_bytes`: the most memory for lists; 0: the driver's
@@ -51,6 +51,6 @@ ComputeUse compute_bins_use(const uint32_t *words);
 // The counts of the last band. Waits for it.
 Result compute_bins_measure(const ComputeBins *bins, ComputeUse *use, Error *error);
 
-// Makes room for so many pairs and some more. If there cannot be as much room, *grown is false and
-// nothing is done.
+// Makes room for more than this many pairs. If that is impossible, *grown is false and nothing
+// changes.
 Result compute_bins_grow(ComputeBins *bins, uint64_t pairs, bool *grown, Error *error);

@@ -20,19 +20,20 @@ enum { CULL_HIDING = 1, CULL_PAINT = 2, CULL_SMOOTH = 4, CULL_VARIANTS = 8 };
 
 // A zeroed struct is empty.
 typedef struct Cull {
-    const GpuLimits *limits;    // the context's, set by who makes it
+    const GpuLimits *limits;    // the context's, set by the owner
     GLuint list[CULL_VARIANTS]; // programs
     GLuint hide, spread;        // programs
-    GpuBuffer listed;           // of a part: how many, rows: see block_cull.comp
-    GpuBuffer tally;            // of the image: strands that are listed, that are hidden
+    GpuBuffer listed;           // of a part: number of strands, rows: see block_cull.comp
+    GpuBuffer tally;            // of the image: numbers of listed strands and of hidden strands
     GpuBuffer nearest, levels;  // see cull_make_levels
     int tiles[2];               // columns, rows
     uint64_t base;              // BaseLayer.depth_version that `levels` were made for; 0: none
     bool covered;               // something opaque is in this image
-    bool tries;               // this image: many were left out of the last one, or the base is new
-    bool off;                 // never try, so that tests can tell
-    uint64_t looked_at;       // strands of this image
-    uint64_t outside, hidden; // of them left out, once they are counted
+    bool tries; // tests strands of this image: many of the last image were culled, or the base is
+                // new
+    bool off;   // never tests strands; for tests
+    uint64_t looked_at;       // number of strands tested in this image
+    uint64_t outside, hidden; // numbers of culled strands, after counting
 } Cull;
 
 // The opaque surfaces of an image: their depth, in samples, and a version >= 1 that differs
@@ -45,11 +46,11 @@ typedef struct CullBase {
 // Compiles the shaders for hair with the CULL_ bits `variant`, unless they are there.
 Result cull_build(Cull *cull, unsigned variant, Error *error);
 
-// Begins an image. `many`: so many strands of the last image were left out, here or later, that
-// testing them is worth its time. Needs the DrawParams block. RESULT_FAILED if memory is short.
+// Begins an image. `many`: so many strands of the last image were culled that testing is worth its
+// time. Needs the DrawParams block. RESULT_FAILED if memory is short.
 Result cull_begin(Cull *cull, const CullBase *base, bool many, Error *error);
 
-// Makes room for a list of so many strands; texture units may change. RESULT_FAILED if memory is
+// Makes room for a list of this many strands; texture units may change. RESULT_FAILED if memory is
 // short.
 Result cull_make_room(Cull *cull, uint32_t strands, Error *error);
 

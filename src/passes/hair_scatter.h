@@ -19,9 +19,9 @@ typedef struct HairScatter {
     GridHair *hair;      // [room], owned
     ParticleLight *seen; // [room], owned
     uint32_t count, room;
-    uint64_t shadow_version; // of the maps that the light was found by
+    uint64_t shadow_version; // of the maps used for the light
     DrawParams drawn;
-    float to_eye[3]; // of the light that is seen
+    float to_eye[3]; // eye for which `seen` was computed
     bool any;
 } HairScatter;
 

@@ -22,7 +22,7 @@ typedef struct ShadowCasters {
     uint32_t count;
 } ShadowCasters;
 
-enum { CAST_PAINT = 1, CAST_SMOOTH = 2, CAST_VARIANTS = 4 }; // what the ribbons' shaders need
+enum { CAST_PAINT = 1, CAST_SMOOTH = 2, CAST_VARIANTS = 4 }; // features of the ribbons' shaders
 unsigned hair_shadow_variant(const ShadowCaster *caster);
 
 // The float whose bits shaders have compared as this integer (glsl/draw/bounds.glsl).
@@ -35,7 +35,7 @@ typedef struct HairShadow {
     GLuint first[CAST_VARIANTS], splat[CAST_VARIANTS]; // programs
     GLuint bounds, spread, finish;
     GpuBuffer box, firsts, depths, sums, layers; // see shadow.h
-    int maps;                                    // there is room for
+    int maps;                                    // number that the buffers have room for
 } HairShadow;
 
 // `side`: a multiple of 8.
@@ -57,5 +57,5 @@ void hair_shadow_find_boxes(HairShadow *hair, const ShadowFrames *frames, Shadow
 // Draws map `map` at its place.
 void hair_shadow_draw(HairShadow *hair, const ShadowFrames *frames, int map, ShadowCasters casters);
 
-// Binds what glsl/draw/shadow.glsl reads.
+// Binds the inputs of glsl/draw/shadow.glsl.
 void hair_shadow_bind(const HairShadow *hair);

@@ -11,9 +11,9 @@ typedef enum LightPass {
     LIGHT_PASS_BESIDE_SLOTS,
     LIGHT_PASS_PLACES,
     LIGHT_PASS_AREAS,
-    LIGHT_PASS_LIT,      // by a light with a map of hair
-    LIGHT_PASS_LIT_WIDE, // by one that has a radius, too
-    LIGHT_PASS_LIT_ALL,  // by one without a map
+    LIGHT_PASS_LIT,      // for a light with a map of hair
+    LIGHT_PASS_LIT_WIDE, // for such a light with a radius
+    LIGHT_PASS_LIT_ALL,  // for a light without a map
     LIGHT_PASS_FILL,
     LIGHT_PASS_SWEEP,
     LIGHT_PASS_SWEEP_WALLED,
@@ -25,9 +25,10 @@ typedef enum LightPass {
     LIGHT_PASSES
 } LightPass;
 
-enum { LIGHT_PART_VERTICES = 64, LIGHT_PART_SEGMENTS = 8 }; // of a strand, that one lane walks
+// parts of a strand that one lane processes
+enum { LIGHT_PART_VERTICES = 64, LIGHT_PART_SEGMENTS = 8 };
 
-// A struct with nothing but `limits` has no programs yet.
+// A struct that is zeroed except for `limits` has no programs yet.
 typedef struct LightPrograms {
     const GpuLimits *limits;
     GLuint program[LIGHT_PASSES][CAST_VARIANTS];
@@ -38,8 +39,8 @@ typedef struct LightPrograms {
 Result light_pass_build(LightPrograms *programs, LightPass pass, unsigned variant, Error *error);
 Result light_pass_use(LightPrograms *programs, LightPass pass, unsigned variant, Error *error);
 
-// Runs the current program, which is that of `pass`, on so many cells or slots. Later passes wait
-// for it.
+// Runs the current program, which must be that of `pass`, on this many cells or slots. Later passes
+// wait for it.
 void light_pass_run_cells(const LightPrograms *programs, LightPass pass, int count);
 
 // Runs the current program on one of `step` strands of a caster (cell_strand). A strand has `of`
@@ -48,7 +49,7 @@ void light_pass_run_cells(const LightPrograms *programs, LightPass pass, int cou
 void light_pass_run_hair(const LightPrograms *programs, const ShadowCaster *caster, uint32_t step,
                          uint32_t of, uint32_t part);
 
-// Later passes wait for the passes so far.
+// Makes later passes wait for all previous ones.
 void light_pass_end(void);
 
 void light_pass_destroy(LightPrograms *programs);

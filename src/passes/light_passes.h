@@ -21,20 +21,20 @@ typedef struct KindTable {
     KindTableMade made;
 } KindTable;
 
-// A struct with nothing but `limits` has no light yet.
+// A struct that is zeroed except for `limits` has no light yet.
 typedef struct LightPasses {
-    LightPrograms programs; // their limits are given
+    LightPrograms programs; // initialised with limits
     LightField field;
     LateRead box_read, counts_read;
     GpuBuffer box, slots, cells, state, sums, planes, depth, source, order, total, light;
     GpuBuffer tables, walls;
     KindTable kinds[FIELD_TABLES];
-    int filled, active; // cells with hair; with those beside them
-    int64_t most_sums;  // bytes: of more cells sums are made in turns; 0: SUMS_MOST
+    int filled, active; // number of cells with hair; plus their neighbours
+    int64_t most_sums;  // bytes: the sums of more cells are made in several turns; 0: SUMS_MOST
 } LightPasses;
 
 // Queues the search for the hair's box before the shadow maps are drawn, so that nothing waits for
-// it later. Of `scene` only the lights are used.
+// it later. Uses only the lights of `scene`.
 Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                           Error *error);
 

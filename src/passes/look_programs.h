@@ -11,7 +11,7 @@
 // The light among hair at the points of a batch (look_points), in the order of its particles.
 typedef struct ParticleLight {
     const HairBatch *batch;
-    GpuBuffer seen; // three floats a point: linear RGB, see hair_scatter.h
+    GpuBuffer seen; // three floats per point: linear RGB, see hair_scatter.h
 } ParticleLight;
 
 // The variants of one compute shader, for a number of lights and of shadow maps. A zeroed struct
@@ -30,10 +30,10 @@ Result look_programs_use(LookPrograms *programs, const Look *look, const HairBat
 // Sets the number of lights and shadow maps. Variants for other numbers are dropped.
 void look_programs_count(LookPrograms *programs, int light_count, int map_count);
 
-// The macro LIGHT_COUNT of a shader for so many lights (shadow.glsl): 0 if there are too many to
+// The macro LIGHT_COUNT of a shader for this many lights (shadow.glsl): 0 if there are too many to
 // unroll loops over them.
 int look_unrolled(int light_count);
 
-// Compiles the variant with these features, unless it is there.
+// Compiles the variant with these features, if missing.
 Result look_programs_build(LookPrograms *programs, unsigned features, Error *error);
 void look_programs_destroy(LookPrograms *programs);

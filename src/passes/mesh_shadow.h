@@ -8,12 +8,12 @@
 typedef struct MeshShadow {
     GLuint program;
     GLuint depth, frame; // a square for each map, one below the other
-    int maps;            // there is room for
-    ShadowMeshKey shown; // in all maps; of a zeroed key: none
+    int maps;            // number that the textures have room for
+    ShadowMeshKey shown; // key of all maps; zeroed: none
 } MeshShadow;
 
-// Makes room for so many maps, and their shader. RESULT_FAILED if memory is short. A zeroed struct
-// may be destroyed.
+// Makes room for this many maps and compiles their shader. RESULT_FAILED if memory is short. A
+// zeroed struct may be destroyed.
 Result mesh_shadow_reserve(MeshShadow *shadow, int maps, Error *error);
 void mesh_shadow_destroy(MeshShadow *shadow);
 

@@ -15,7 +15,7 @@
 
 typedef struct Passes {
     BackendOptions set;
-    const RendererOptions *options; // of a window
+    const RendererOptions *options; // for a window
     const Gpu *gpu;
     RenderTarget target;
     Quads quads;

@@ -15,8 +15,8 @@ typedef struct QuadRibbons {
     LookPrograms project;
     GLuint draw;                // program
     GLuint vertex_array;        // without attributes
-    GpuBuffer edges, shades;    // uvec4 a particle, see hair.vert
-    GpuBuffer indices, command; // triangles, and how many of them: glDrawElementsIndirect
+    GpuBuffer edges, shades;    // a uvec4 per particle, see hair.vert
+    GpuBuffer indices, command; // triangles, and their number: glDrawElementsIndirect
 } QuadRibbons;
 
 // A zeroed struct is empty.
@@ -25,18 +25,18 @@ typedef struct Quads {
     ABuffer abuffer;
     const GpuLimits *limits;
     int width, height; // px of the image
-    int samples;       // across a pixel
-    int band_rows;     // that the next image starts with
+    int samples;       // per pixel side
+    int band_rows;     // rows of the next image's first band
     Cull cull;
-    bool unsettled; // nobody knows yet whether the A-buffer held all of the image
-    bool skips;     // strands are looked through before they are projected
+    bool unsettled; // not yet known whether the A-buffer held all of the image
+    bool skips;     // strands are tested for visibility before projection
 } Quads;
 
 // RESULT_FAILED if memory is short. `gpu` must outlive the quads.
 Result quads_create(Quads *quads, const Gpu *gpu, const RendererOptions *options, Error *error);
 void quads_destroy(Quads *quads);
 
-// Makes what drawing over a mesh needs, unless it is there.
+// Creates what drawing over a mesh needs, if missing.
 Result quads_add_base(Quads *quads, Error *error);
 
 // Draws the image's hair over the target's base, or over the background if `base` has no target,

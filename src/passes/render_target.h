@@ -6,23 +6,23 @@
 #include "gpu/late_read.h"
 #include "image/image.h"
 
-enum { EDGE_SAMPLES = 4 }; // of the mesh's depth where the hair has one; CPU drivers have no more
+enum { EDGE_SAMPLES = 4 }; // of the mesh's depth per sample of the hair; CPU drivers have no more
 
 typedef struct RenderTarget {
-    int width, height;         // px of the image; all else is drawn in samples, which are smaller
-    int samples;               // across a pixel
-    GLuint image, image_frame; // RGBA8, RGBA16 or RGBA32F as the image's kind
-    GLuint hair_frame;         // no colour; `depth` if there is a mesh
-    GLuint depth;              // that hides hair: at edges the farthest of all samples'
-    GLuint base, base_frame;   // RGBA16F: mesh over background, linear, premultiplied; `depth`
-    GLuint middle_depth;       // the mesh's in the middles of pixels
+    int width, height; // px of the image; everything else is drawn in samples, which are smaller
+    int samples;       // per pixel side
+    GLuint image, image_frame;     // RGBA8, RGBA16 or RGBA32F by the image's kind
+    GLuint hair_frame;             // no colour; `depth` if there is a mesh
+    GLuint depth;                  // hides hair: at edges the farthest of all samples
+    GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied; `depth`
+    GLuint middle_depth;           // depth of the mesh at pixels' middles
     GLuint surface, surface_frame; // RGBA32F, glsl/draw/surface.frag; with `middle_depth`
     GLuint tint;                   // RGBA16F, of the same
     GLuint lit, lit_frame;         // RGBA16F, light of that surface; with `middle_depth`
-    GLuint edge_depth, edge_frame; // the mesh's, EDGE_SAMPLES a sample
+    GLuint edge_depth, edge_frame; // depth of the mesh, EDGE_SAMPLES per sample
     ImageKind kind;
-    LateRead sent[2]; // images on their way back, in turn
-    int next;         // of them
+    LateRead sent[2]; // images on their way to the CPU, in turn
+    int next;         // index of the next
 } RenderTarget;
 
 // A pixel has `samples` x `samples` samples. The driver's framebuffers must be able to hold them
@@ -31,7 +31,7 @@ Result render_target_create(RenderTarget *target, int width, int height, int sam
                             ImageKind kind, Error *error);
 void render_target_destroy(RenderTarget *target);
 
-// Adds what a mesh or a floor needs, unless it is there.
+// Creates what a mesh or a floor needs, if missing.
 Result render_target_add_base(RenderTarget *target, Error *error);
 
 // Begins to read the image back, and after it the first word of `flag`, unless that is NULL. One

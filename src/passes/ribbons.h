@@ -6,9 +6,9 @@
 #include "passes/cull.h"
 #include "passes/look_programs.h"
 
-enum { RIBBONS_MOST = 1 << 24 }; // slots; as many as a buffer shows to shaders, if that is less
+enum { RIBBONS_MOST = 1 << 24 }; // slots; fewer if shaders can access only a smaller buffer
 
-// Mesh and floor. No target: there are none.
+// Mesh and floor. No target: neither.
 typedef struct RibbonsBase {
     CullBase cull;
     const int *box; // samples: x, y lowest, highest; outside there is background
@@ -20,11 +20,11 @@ typedef struct Ribbons {
     Cull cull;
     GpuBuffer records, keys; // RIBBON_TEXELS uvec4 (block.glsl) and uint a slot: its depth's bits
     GpuBuffer counts;
-    RibbonsBase base;          // of the image
-    size_t slots;              // of the image
-    bool skips;                // many strands of the last image could be left out
-    uint64_t strands;          // of the image
-    uint64_t segments, culled; // once they are counted
+    RibbonsBase base; // of the image
+    size_t slots;     // of the image
+    bool skips;       // testing strands is worthwhile: many of the last image could be culled
+    uint64_t strands; // of the image
+    uint64_t segments, culled; // after counting
 } Ribbons;
 
 // `limits` must outlive the ribbons. RESULT_FAILED if memory is short.
@@ -42,5 +42,6 @@ Result ribbons_add(Ribbons *ribbons, const HairBatch *batch, const Look *look, E
 // were not.
 void ribbons_take_counts(Ribbons *ribbons, const uint32_t *counts, const uint32_t *tally);
 
-// Counts what was added: segments, culled. Waits for it. RESULT_FAILED if it can't be read.
+// Counts the segments and culled strands that were added. Waits for the GPU. RESULT_FAILED if the
+// counts can't be read.
 Result ribbons_count(Ribbons *ribbons, Error *error);

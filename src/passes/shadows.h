@@ -18,9 +18,9 @@ typedef struct ShadowScene {
     struct {
         const RenderMesh *mesh;            // NULL or without triangles: none
         float rotation[4], translation[3]; // m; as the DrawParams block has them
-    } mesh;                                // stands in the light, too
-    float middle[3];                       // m, world: what a lamp looks at
-    uint64_t revision; // another one wherever positions differ; 0: never the same
+    } mesh;                                // casts shadows, too
+    float middle[3];                       // m, world: the lamps' target
+    uint64_t revision;                     // changes whenever positions change; 0: always differs
 } ShadowScene;
 
 typedef struct Shadows {
@@ -29,19 +29,20 @@ typedef struct Shadows {
     MeshShadow mesh;
     uint64_t mesh_version;
     ShadowParams params;
-    ShadowKey drawn; // what the maps show
+    ShadowKey drawn; // key of the maps
     bool any;
-    uint64_t version;    // counts the times that they were made
-    uint32_t maps_drawn; // in the last shadows_draw
+    uint64_t version;    // incremented when maps are made
+    uint32_t maps_drawn; // number of maps drawn in the last shadows_draw
 } Shadows;
 
 void shadows_create(Shadows *shadow, const GpuLimits *limits, const ShadowOptions *options);
 void shadows_destroy(Shadows *shadow);
 
-// Makes room for so many maps of a mesh, and their shader. RESULT_FAILED if memory is short.
+// Makes room for this many maps of a mesh and compiles their shader. RESULT_FAILED if memory is
+// short.
 Result shadows_reserve_mesh(Shadows *shadow, int maps, Error *error);
 
-// The mesh has changed, at the same place in memory.
+// Must be called when the mesh has changed at the same place in memory.
 void shadows_forget_mesh(Shadows *shadows);
 
 // Whether the maps show this scene already.
@@ -52,5 +53,5 @@ bool shadows_show(const Shadows *shadow, const ShadowScene *scene);
 // short.
 Result shadows_draw(Shadows *shadow, const ShadowScene *scene, GpuTimer *timer, Error *error);
 
-// Binds what glsl/draw/shadow.glsl reads.
+// Binds the inputs of glsl/draw/shadow.glsl.
 void shadows_bind(Shadows *shadow);
