@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The figures that tests/image/test_metrics.c expects, computed in another way than src/image/flip.c and src/image/compare.c do: double
-precision throughout, full two-dimensional kernels, statistics in two passes. Needs nothing but Python.
+"""The values that tests/image/test_metrics.c expects, computed in another way than in src/image/flip.c and src/image/compare.c: double
+precision throughout, full two-dimensional kernels, statistics in two passes. Needs only Python.
 usage: tests/data/image_figures.py        prints the table of the test
 """
 from math import ceil, exp, hypot, log10, pi, sqrt
@@ -10,7 +10,7 @@ WIDTH, HEIGHT = 37, 29
 
 
 def picture(kind):
-    """The same formulas as make_picture in tests/image/test_metrics.c: whole levels."""
+    """The same formulas as in tests/image/test_metrics.c: integer levels."""
     rows = []
     for y in range(HEIGHT):
         row = []
@@ -71,8 +71,8 @@ def ssim(a, b):
 
 # --- FLIP
 
-# From the chromaticities of IEC 61966-2-1, with D65 to five digits (0.31271, 0.32902), not as a table: columns are the
-# primaries scaled so that their sum is white.
+# Computed from the chromaticities of IEC 61966-2-1 with D65 to five digits (0.31271, 0.32902), not copied from a table:
+# columns are the primaries, scaled so that their sum is white.
 def solve(m, v):
     m = [row[:] + [x] for row, x in zip(m, v)]
     for i in range(3):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Runs inside Blender (test_blender.sh): each step builds a scene, exports or imports with blender_hair.py and compares.
+"""Runs inside Blender (test_blender.sh): each step builds a scene, exports or imports it by blender_hair.py and compares.
 
-Arguments behind `--`: folder of the programs, scratch folder. The last line is `N passed, N failed, N skipped`.
+Arguments after `--`: folder of the programs, scratch folder. The last line is `N passed, N failed, N skipped`.
 """
 
 import json
@@ -36,14 +36,14 @@ def step(function):
 
 
 def check(what, holds, got=""):
-    """Counts a claim; one that does not hold is printed."""
+    """Counts a test; prints it if it fails."""
     COUNTS["passed" if holds else "failed"] += 1
     if not holds:
         print(f"FAILED: {what}: {got}", flush=True)
 
 
 def skip(why):
-    """Counts a claim that cannot be tried here."""
+    """Counts a test that cannot run here."""
     COUNTS["skipped"] += 1
     print(f"skipped: {why}", flush=True)
 
@@ -54,7 +54,7 @@ def path(name):
 
 
 def tractrix(*words):
-    """Runs tractrix-render or another program; its error output is in the failure."""
+    """Runs tractrix-render or another program; a failure shows its error output."""
     done = subprocess.run([os.path.join(BIN, words[0]), *words[1:]], capture_output=True, text=True, check=False)
     check(" ".join(words[:2]) + " runs", done.returncode == 0, done.stderr)
 
@@ -65,7 +65,7 @@ def empty():
 
 
 def export(*words, status=hair.DONE):
-    """The command line's export."""
+    """Exports by the command line."""
     got = hair.main(["export", *words])
     check(f"export {' '.join(words)} ends with {status}", got == status, got)
 
@@ -82,7 +82,7 @@ def some_hair(strands=6, size=5, seed=1, ragged=False):
 
 
 def read_tfx(name):
-    """Positions (S, P, 3), strand UV (S, 2) and thickness (S,) of a TressFX 4 file, None where it has none."""
+    """Positions (S, P, 3), strand UV (S, 2) and thickness (S,) of a TressFX 4 file; None if it lacks them."""
     with open(name, "rb") as file:
         data = file.read()
     version, strands, size, *offsets = np.frombuffer(data, "<u4", 8)
@@ -95,7 +95,7 @@ def read_tfx(name):
 
 @step
 def add_on():
-    """It installs from its one file, registers menu entries and operators, works, and leaves."""
+    """The add-on installs from its single file, registers menu entries and operators, works, and unregisters."""
     bpy.ops.preferences.addon_install(filepath=os.path.join(ROOT, "scripts", "blender_hair.py"))
     check("the add-on is enabled", bpy.ops.preferences.addon_enable(module="blender_hair") == {"FINISHED"})
     empty()
@@ -117,7 +117,7 @@ def add_on():
 
 @step
 def curves_object():
-    """Every property of a Curves object arrives to the bit, also for strands of different sizes."""
+    """Every property of a Curves object is exported exactly, also for strands of different sizes."""
     for ragged in (False, True):
         empty()
         given = some_hair(ragged=ragged)
@@ -151,7 +151,7 @@ def curves_object():
 
 @step
 def cubic_curves():
-    """NURBS of a Curves object are the lines that Blender draws."""
+    """NURBS of a Curves object are exported as the lines that Blender draws."""
     empty()
     old = bpy.data.curves.new("old", "CURVE")
     old.dimensions = "3D"
@@ -179,7 +179,7 @@ def cubic_curves():
 
 @step
 def units_and_axes():
-    """Blender's z up and unit become y up and metres; an object's own transform counts."""
+    """Blender's z up and unit become y up and metres; an object's own transform is applied."""
     empty()
     old = bpy.data.curves.new("old", "CURVE")
     old.dimensions, old.bevel_depth = "3D", 0.5
@@ -247,7 +247,7 @@ def particle_hair():
 
 @step
 def rigid_head():
-    """The emitter's motion becomes the head of the scene file, and Tractrix puts the roots where Blender has them."""
+    """The emitter's motion becomes the scene file's head, and Tractrix puts roots where Blender does."""
     empty()
     obj = hairy_sphere()
     scene = bpy.context.scene
@@ -297,7 +297,7 @@ def raises(work):
 
 
 def cross_strands(places, arm):
-    """A Hair of one short strand through each place (N, 3; m, y up), along x for even and y for odd ones."""
+    """A Hair with a short strand through each point (N, 3; m, y up), along x for even points and y for odd ones."""
     axes = np.array([[arm, 0, 0] if i % 2 == 0 else [0, arm, 0] for i in range(len(places))])
     points = np.stack([places - axes, places, places + axes], 1).reshape(-1, 3)
     return hair.Hair(points.astype(np.float32), np.full(len(places), 3, np.int32), radius=np.full(len(points), 2e-3, np.float32))
@@ -305,7 +305,7 @@ def cross_strands(places, arm):
 
 @step
 def camera():
-    """The middle of short strands lies at the same pixel in both programs."""
+    """Both programs show the middles of short strands at the same pixels."""
     empty()
     scene = bpy.context.scene
     places = np.array([[0, 0, 0], [0.3, 0.2, 0.1], [-0.35, 0.25, -0.2], [-0.3, -0.25, 0.15], [0.33, -0.2, -0.3]])
@@ -333,7 +333,7 @@ def camera():
 
 
 def middle_of(name, around, reach=12):
-    """The centre of the light within `reach` pixels of a place (x from left, y from below) in a PFM file."""
+    """The centroid of light within `reach` pixels of a point (x from the left, y from below) in a PFM file."""
     with open(name, "rb") as file:
         kind, size, scale = file.readline(), file.readline().split(), float(file.readline())
         pixels = np.frombuffer(file.read(), "<f4" if scale < 0 else ">f4").reshape(
@@ -346,7 +346,7 @@ def middle_of(name, around, reach=12):
 
 @step
 def scene_back():
-    """Camera, lights, size and rate of a scene file come back as they were."""
+    """Camera, lights, size and rate of a scene file are imported as they were exported."""
     empty()
     scene = bpy.context.scene
     hair.new_curves(bpy.context, "hair", some_hair())
@@ -386,7 +386,7 @@ def scene_back():
 
 @step
 def materials():
-    """Melanin, a plain colour, or a map of the hair's material become the section's."""
+    """Melanin, a plain colour, or a map of the hair's material become those of the section."""
     for kind, member, wanted in (
         ("ShaderNodeBsdfHairPrincipled", "melanin", -math.log(0.5) * 0.506 / 0.419),
         ("ShaderNodeBsdfPrincipled", "albedo", [hair.srgb([0.2])[0], hair.srgb([0.1])[0], hair.srgb([0.05])[0]]),
@@ -420,7 +420,7 @@ def materials():
 
 @step
 def light_units():
-    """A white matt plane in Cycles shows what the scene file's intensity says."""
+    """A white matt plane in Cycles is as bright as the scene file's intensity."""
     if not hasattr(bpy.types, "CyclesRenderSettings") and "cycles" not in bpy.context.preferences.addons:
         return skip("light: this Blender has no Cycles")
     for kind, energy in (("SUN", 2.0), ("POINT", 60.0), ("SPOT", 60.0), ("AREA", 12.0)):
@@ -447,7 +447,7 @@ def light_units():
 
 
 def plane_radiance(scene):
-    """The mean linear value of an image of 4 x 4 pixels by Cycles, without a world."""
+    """The mean linear value of an image of 4 x 4 pixels by Cycles, without world light."""
     scene.render.engine, scene.cycles.samples, scene.cycles.max_bounces = "CYCLES", 16, 0
     scene.cycles.use_denoising = False
     scene.render.resolution_x = scene.render.resolution_y = 4
@@ -459,9 +459,9 @@ def plane_radiance(scene):
 
 
 def bending_body(count=40):
-    """A hairy sphere that an armature bends and a shape key swells, frames 1 to 9."""
+    """A hairy sphere that is bent by an armature and inflated by a shape key, frames 1 to 9."""
     obj = hairy_sphere(count)
-    flat = bmesh.new()  # roots lie on triangles in both programs
+    flat = bmesh.new()  # so that both programs put roots on triangles
     flat.from_mesh(obj.data)
     bmesh.ops.triangulate(flat, faces=flat.faces)
     flat.to_mesh(obj.data)
@@ -488,7 +488,7 @@ def bending_body(count=40):
         group.add([v.index for v in obj.data.vertices if v.co.z * side >= 0], 1.0, "REPLACE")
     bend = obj.modifiers.new("bend", "ARMATURE")
     bend.object = rig
-    while obj.modifiers[0] != bend:  # hair grows on the bent skin
+    while obj.modifiers[0] != bend:  # so that hair grows on the bent skin
         bpy.context.view_layer.objects.active = obj
         bpy.ops.object.modifier_move_up(modifier="bend")
     bone = rig.pose.bones["high"]
@@ -511,7 +511,7 @@ def evaluated(obj, frame):
 
 @step
 def deforming_body():
-    """A body that bends goes to Tractrix with its hair bound to it, and comes back with simulated hair on it."""
+    """Tractrix gets a bending body with its hair bound to it, and its simulated hair is imported onto the body."""
     empty()
     obj = bending_body()
     truth = np.stack([evaluated(obj, frame) for frame in range(1, 10)])
@@ -545,7 +545,7 @@ def deforming_body():
 
 @step
 def other_topology():
-    """A mesh whose faces change is refused with object and frame, and nothing is written."""
+    """A mesh whose faces change is refused; the message names object and frame, and nothing is written."""
     empty()
     obj = bending_body(4)
     build = obj.modifiers.new("build", "BUILD")
@@ -558,7 +558,7 @@ def other_topology():
 
 @step
 def character():
-    """A skinned .glb becomes samples by the command that tractrix-render names."""
+    """The command that tractrix-render recommends converts a skinned .glb to samples."""
     empty()
     obj = bending_body(4)
     for modifier in [m for m in obj.modifiers if m.type == "PARTICLE_SYSTEM"]:
@@ -587,7 +587,7 @@ def character():
 
 @step
 def alembic_unit():
-    """An .abc file of Tractrix says its unit, which tractrix-convert reads."""
+    """An .abc file by Tractrix contains its unit, which tractrix-convert reads."""
     if bpy.app.build_options.alembic:
         return  # Blender's importer has its own scale
     curls = os.path.join(ROOT, "assets", "curls.tfx")
@@ -601,7 +601,7 @@ def alembic_unit():
 
 @step
 def round_trip():
-    """A groom goes .abc -> Blender -> .tfx -> simulation -> .usda -> Blender and arrives."""
+    """A groom keeps its shape along .abc -> Blender -> .tfx -> simulation -> .usda -> Blender."""
     empty()
     hair.import_hair(bpy.context, os.path.join(ROOT, "tests", "data", "groom.abc"))
     bpy.context.scene.frame_end = 6
@@ -648,7 +648,7 @@ def round_trip():
 
 @step
 def bad_input():
-    """What cannot be read is one line and a status."""
+    """Unreadable input gives one error line and an exit status."""
     with open(path("bad.npz"), "wb") as file:
         file.write(b"no zip")
     np.savez(path("odd.npz"), points=np.zeros((5, 3), np.float32), sizes=np.array([2, 2], np.int32))
@@ -671,7 +671,7 @@ def bad_input():
 
 
 def main():
-    """Runs all steps, those named in TRACTRIX_STEPS alone if it is set."""
+    """Runs all steps, or only those named in TRACTRIX_STEPS if it is set."""
     chosen = os.environ.get("TRACTRIX_STEPS", "").split()
     for one in EVERY_STEP:
         if chosen and one.__name__ not in chosen:
