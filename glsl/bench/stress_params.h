@@ -7,11 +7,11 @@
 
 // Shader storage.
 #define BIND_STRESS_WORST                                                                          \
-    0 // vec4 a strand: greatest length error, energy and move, over what is
-      // allowed; w > 0: energy and move were not looked at
+    0 // vec4 per strand: largest length error, energy and move, relative to
+      // their bounds; w > 0: energy and move were not checked
 #define BIND_STRESS_FIRST                                                                          \
-    1 // uvec4 a strand: the first step that broke a rule, 0: none: a number
-      // that is not finite, length, energy, rest
+    1 // uvec4 per strand: the first step that broke each rule, 0: none. Rules:
+      // finite numbers, length, energy, rest
 
 UNIFORM_BLOCK(StressParams, stress_params, BIND_STEP)
 {

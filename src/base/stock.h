@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Things that are costly to make and that the next user will often want just so: each is kept under
-// a key, counts its users, and stays for a while when it has none.
+// Values that are costly to make and are often needed again: each has a key, counts its users, and
+// is kept for a while when it has none.
 #pragma once
 
 #include <stdbool.h>
@@ -9,25 +9,27 @@
 
 typedef struct StockItem StockItem;
 
-// Not for several threads at once. Begins with {.most = N}.
+// Must not be used by several threads at once. Initialise with {.most = N}.
 typedef struct Stock {
-    StockItem *items; // the one that was taken last first
-    uint32_t most;    // items that have no user and still are kept
+    StockItem *items; // the most recently taken first
+    uint32_t most;    // number of items that are kept without users
 } Stock;
 
-// The value under a key of `size` bytes, with one user more; NULL: there is none.
+// Adds a user to the value of a key of `size` bytes; NULL: there is no such value.
 void *stock_take(Stock *stock, const void *key, size_t size);
 
-// Room for a new value of `value_size` bytes under that key, zeroed, with one user. `destroy` ends
-// what the value has become. NULL when memory is short.
+// Adds a zeroed value of `value_size` bytes for that key, with one user. `destroy` destroys what
+// the caller has put into it. NULL when memory is short.
 void *stock_add(Stock *stock, const void *key, size_t size, size_t value_size,
                 void (*destroy)(void *value));
 
-// One user fewer. Where more than `most` values have none, those that were taken longest ago go.
+// Removes a user. If more than `most` values have none, the least recently taken ones are
+// destroyed.
 void stock_return(Stock *stock, void *value);
 
-// All values, for a search by what they are: the first (`value` NULL), the next; NULL: no more.
+// Iterates over all values: the first (`value` NULL), the next; NULL: no more.
 void *stock_next(const Stock *stock, const void *value);
 
-// Ends all, whoever uses them; `lost`: what they stand for has gone already, only memory is freed.
+// Destroys all values, also those with users; `lost`: what they represent no longer exists, so only
+// memory is freed.
 void stock_destroy(Stock *stock, bool lost);

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-static int ended; // values, how many
-static char last; // and which was the last
+static int ended; // number of destroyed values
+static char last; // the last destroyed value
 
 static void end(void *value)
 {
@@ -49,9 +49,10 @@ static void idle_values_stay_and_the_longest_untaken_goes(void **state)
     char *values[] = {add(&stock, "a"), add(&stock, "b"), add(&stock, "c")};
     (void)state;
     ended = 0;
-    assert_ptr_equal(take(&stock, "a"), values[0]); // by two now, and later than b and c
+    assert_ptr_equal(take(&stock, "a"),
+                     values[0]); // has two users now, and was taken after b and c
     for (int i = 2; i >= 0; --i) stock_return(&stock, values[i]);
-    assert_int_equal(ended, 0); // a still has a user
+    assert_int_equal(ended, 0); // a still has one user
     stock_return(&stock, values[0]);
     assert_int_equal(ended, 1);
     assert_int_equal(last, 'b');
@@ -81,7 +82,7 @@ static void values_in_use_are_not_counted(void **state)
     assert_null(stock_next(&stock, NULL));
 }
 
-// The sanitizer would find what stays in memory.
+// The sanitizer detects memory that is not freed.
 static void what_is_lost_is_not_ended_again(void **state)
 {
     Stock stock = {.most = 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Programs are built once for all who want the same, and few are kept for nobody.
+// Users of equal programs share one, and only a few unused programs are kept.
 #include "gpu/gpu.h"
 #include "gpu/shader.h"
 #include "support/needed.h"
@@ -50,7 +50,7 @@ static void the_same_files_and_macros_are_one_program(void **state)
     assert_int_not_equal(first, rounded);
     shader_release(first);
     shader_release(second);
-    assert_int_equal(build(8), first); // nobody had it
+    assert_int_equal(build(8), first); // it had no user but was kept
     shader_release(first);
     shader_release(other);
     shader_release(rounded);
@@ -66,7 +66,7 @@ static uint32_t count_programs(void)
     return count;
 }
 
-// However many scenes of other kinds a device has seen.
+// Also if a device has drawn many scenes of different kinds.
 static void few_programs_are_kept_for_nobody(void **state)
 {
     (void)state;
