@@ -44,7 +44,7 @@ static Result execute(char **words, const ChildRun *run, double *wall_ms, Error 
     free(kept);
     // Exit status 1 means that a bound is broken. This process reports that itself.
     if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) <= 1) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "tractrix-bench: another process to measure in failed");
+    return error_set(error, RESULT_FAILED, "tractrix-bench: the process of a measurement failed");
 }
 
 Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *error)

@@ -184,10 +184,8 @@ static void tell_fit(const StrandsFit *fit, FILE *messages)
             fit->move.scale, fit->turned_deg, 1e3 * fit->moved, 1e3 * fit->before,
             1e3 * fit->after);
     if (fit->after > FITS_BADLY)
-        fprintf(
-            messages,
-            "--fit: that is far: is it a head, does it look the same way (--rotate before it), is "
-            "its unit right (--mesh-unit)?\n");
+        fprintf(messages, "--fit: this is a bad fit: check that the mesh is a head, its "
+                          "orientation (--rotate before --fit) and its unit (--mesh-unit)\n");
 }
 
 static Result fit(ConvertSteps *steps, Strands *strands, Error *error)

@@ -95,8 +95,8 @@ static Result make_maps(HairShadow *hair, int maps, Error *error)
     if (!hair->deep)
         return gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths", 4 * texels,
                                   GL_R32UI, error);
-    TRY(gpu_buffer_reserve(&hair->depths, hair->limits, "shadow's beginnings", 4 * texels, GL_R32F,
-                           error));
+    TRY(gpu_buffer_reserve(&hair->depths, hair->limits, "starts of shadow layers", 4 * texels,
+                           GL_R32F, error));
     return gpu_buffer_reserve(&hair->layers, hair->limits, "shadow's layers",
                               4 * texels * SHADOW_LAYERS, GL_R32UI, error);
 }
@@ -105,8 +105,8 @@ static Result make_maps(HairShadow *hair, int maps, Error *error)
 static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error)
 {
     int64_t texels = (int64_t)hair->maps * hair->side * hair->side;
-    TRY(gpu_buffer_reserve(&hair->box, hair->limits, "light's box", 4 * MAX_LIGHTS * BOX_WORDS, 0,
-                           error));
+    TRY(gpu_buffer_reserve(&hair->box, hair->limits, "box of hair by light",
+                           4 * MAX_LIGHTS * BOX_WORDS, 0, error));
     if (hair->deep)
         TRY(gpu_buffer_reserve(&hair->firsts, hair->limits, "shadow's depths",
                                4 * texels / (SHADOW_COARSE * SHADOW_COARSE), GL_R32UI, error));

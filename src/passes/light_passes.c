@@ -72,8 +72,7 @@ static Result upload_kinds(LightPasses *passes, const GridScene *scene, FieldTab
     KindTableMade made = {.kinds = scene->kind_count, .lights = passes->field.lights};
     for (int k = 0; k < made.kinds; ++k) made.made[k] = kinds[k].made[table];
     if (mine->buffer.buffer && memcmp(&made, &mine->made, sizeof made) == 0) return RESULT_OK;
-    TRY(upload(passes, &mine->buffer, "a table of fibres", NULL, bytes * (size_t)made.kinds,
-               error));
+    TRY(upload(passes, &mine->buffer, "fibre table", NULL, bytes * (size_t)made.kinds, error));
     for (int k = 0; k < made.kinds && bytes; ++k) {
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, mine->buffer.buffer);
         glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(bytes * (size_t)k), (GLsizeiptr)bytes,
