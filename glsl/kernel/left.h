@@ -23,22 +23,23 @@ SHARED_FUNCTION float left_mix(float a, float b, float c, float d, float u, floa
 // The transmittance of the mean number of fibres in front of a point (>= 0).
 SHARED_FUNCTION float left_of_fibres(float fibres) { return SHARED_EXP2(-FLOAT(LOG2E) * fibres); }
 
-// --- Wide lights. A point looks along LEFT_RAYS rays to parts of the light, each with the place in
-// the map moved by up to half a texel, so that their mean is continuous. Rays leave the point's own
-// column the farther the nearer they come to the light. Hair: the depths between the first fibre
-// and the point are cut into LEFT_SLABS slabs; in each a ray adds the fibres of the column in which
-// its middle lies. Mesh: rays look, in LEFT_STEPS steps that get longer away from the point, which
-// surfaces stand before them. The mean depth of these says how far the rays are apart there; each
-// ray then is blocked or not, in LEFT_TURNS turns.
+// --- Wide lights. From each point, LEFT_RAYS rays go to different parts of the light. Each ray's
+// start is shifted by up to half a texel, so that the mean over rays is continuous. The nearer a
+// ray comes to the light, the farther it is from the point's own column of texels. Hair: the depths
+// between the first fibre and the point are divided into LEFT_SLABS slabs; in each slab, a ray
+// counts the fibres of the column that contains its middle. Mesh: in LEFT_STEPS steps, whose length
+// grows with the distance from the point, rays look for surfaces in front of them. The mean depth
+// of these surfaces determines how far apart the rays are there; then each ray is tested in
+// LEFT_TURNS rotated positions and is either blocked or not.
 #define LEFT_RAYS     8
 #define LEFT_SLABS    4
 #define LEFT_STEPS    6
-#define LEFT_TURNS    3 // of the rays, by 24 degrees, so that edges of the mesh have no steps
+#define LEFT_TURNS    3 // rotations by 24 degrees, so that shadows of mesh edges have no steps
 #define LEFT_TURN_COS 0.9135455f
 #define LEFT_TURN_SIN 0.4067366f
 
-// The share of the way from the point to the first fibre at the middle of slab i, and from the
-// first fibre to the point at its end.
+// Depths as shares of the distance: the middle of slab i, from the point to the first fibre; and
+// the end of slab i, from the first fibre to the point.
 SHARED_FUNCTION float left_slab_middle(int i)
 {
     return 1.0f - (FLOAT(i) + 0.5f) * (1.0f / FLOAT(LEFT_SLABS));
@@ -49,28 +50,28 @@ SHARED_FUNCTION float left_slab_end(int i)
     return (FLOAT(i) + 1.0f) * (1.0f / FLOAT(LEFT_SLABS));
 }
 
-// The share of the way from the point to the light at the end of step i.
+// The end of step i, as a share of the distance from the point to the light.
 SHARED_FUNCTION float left_step(int i)
 {
     float share = (FLOAT(i) + 1.0f) * (1.0f / FLOAT(LEFT_STEPS));
     return share * share;
 }
 
-// Whether the mesh stands between the point and the light where step i of a ray ends. `gap`: the
-// depth of its surface there, 1 where there is none. `off`: how far the ray goes from the middle of
-// the light, over its radius. (A surface aslant that all of the light shines on is not in the way.)
+// Whether the mesh blocks a ray at the end of its step i. `gap`: the mesh's depth there, 1 if there
+// is none. `off`: the distance of the ray's target from the light's middle, relative to the light's
+// radius. (A slanted surface that the whole light shines on must not block.)
 SHARED_FUNCTION bool left_in_way(int i, float gap, float depth, float off)
 {
     return gap < 1.0f && gap < depth - off * left_step(i) * depth;
 }
 
-// The depth before which a surface blocks light: half-way to the nearest one that any ray met.
+// Surfaces in front of this depth block light: half-way to the nearest surface that any ray found.
 SHARED_FUNCTION float left_limit(float depth, float nearest)
 {
     return SHARED_MIN(0.5f * (depth + nearest), 1.0f);
 }
 
-// The texel, along one axis, of a place in a map of `side` texels.
+// The texel along one axis at a position in a map of `side` texels.
 SHARED_FUNCTION int left_texel(float place, int side)
 {
     return INT(SHARED_MIN(SHARED_MAX(place, 0.0f), FLOAT(side) - 1.0f));

@@ -15,7 +15,7 @@ void drawn_bodies_destroy(DrawnBodies *drawn)
     *drawn = (DrawnBodies){0};
 }
 
-// Moves points of `own`'s frame to that of `first`.
+// The motion that takes points from the frame of `own` to that of `first`.
 static HeadPose find_way(const HeadPose *own, const HeadPose *first)
 {
     HeadPose way = {0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lights that have a radius: soft shadows against the share of a disc that an edge hides, and lobes
-// against their mean over the disc.
+// Lights with a radius: soft shadows against the exact share of the disc that an edge hides, and
+// lobes against their mean over the disc.
 #include "support/shadow_stage.h"
 
 #include "glsl/kernel/fibre.h"
@@ -19,7 +19,7 @@ static double disc_beyond(double t)
     return 0.5 + (t * sqrt(1 - t * t) + asin(t)) / M_PI;
 }
 
-// Points at the depth `down` along z or x, 1.2 of the disc's radius to either side of `edge`.
+// Points at the depth `down` along z or x, up to 1.2 of the disc's radius to either side of `edge`.
 static void fill_points(float points[POINTS][4], bool along_x, float edge, float down, double wide)
 {
     for (int i = 0; i < POINTS; ++i) {
@@ -31,9 +31,9 @@ static void fill_points(float points[POINTS][4], bool along_x, float edge, float
     }
 }
 
-// Eight rays in two rings resolve the share of a strand's edge that lies as here to 0.14, three
-// turns of them that of a mesh's to 0.1. They have the disc's mean, but for the depth of what hides
-// it.
+// Eight rays in two rings resolve the share behind a strand's edge, in this position, to 0.14, and
+// their three turns resolve that behind a mesh's edge to 0.1. The mean over the points equals the
+// disc's, except for the strand's depth.
 static void expect_shares(const float light[POINTS], const double expected[POINTS])
 {
     double sum = 0, most = 0;
@@ -73,7 +73,7 @@ static void a_meshs_edge_hides_its_share(void **state)
 static void a_lamps_radius_is_a_length(void **state)
 {
     (void)state;
-    // The lamp at 2 m sees the edge 0.3 m below 1.7 m away.
+    // The mesh is 2.05 m below the lamp, and the points are 0.4 m below the mesh's edge.
     const double up = 2, down = 0.4, size = 0.3, wide = size * down / (up + 0.05);
     Mesh mesh = shadow_stage_square(-0.05f, 0.3f);
     for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
@@ -96,7 +96,7 @@ static void a_lamps_radius_is_a_length(void **state)
     mesh_destroy(&mesh);
 }
 
-// One strand, as wide as the disc looks from the points: it lies between two edges.
+// One strand, as wide as the disc's apparent diameter at the points: the area between two edges.
 static void a_strand_hides_its_share(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void a_strand_hides_its_share(void **state)
     }
 }
 
-// All of the disc stands above a surface aslant, which so has no shadow of its own.
+// A slanted surface that all of the disc shines on has no shadow of its own.
 static void a_lit_mesh_stays_lit(void **state)
 {
     (void)state;
@@ -174,7 +174,8 @@ static void a_lobe_is_widened_as_its_mean(void **state)
         }
         print_message("lobe of %.0f degrees: off by %.3f of its peak\n", sigma * 180 / M_PI,
                       off / peak);
-        // A disc has no tails as a Gaussian has: the worst is a lobe narrower than the disc.
+        // A disc has no tails, unlike a Gaussian: the error is largest for lobes narrower than the
+        // disc.
         if (!(off < 0.12 * peak)) fail_msg("off by %g of %g", off, peak);
     }
 }
