@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Other devices imitated on this one, so that tests see what no machine of theirs has: decisions as
-// on a GPU, few work groups, a framebuffer that is small, maths that rounds otherwise.
+// Imitates other devices for tests: decisions as on a GPU, few work groups, a small framebuffer,
+// maths with other rounding.
 #pragma once
 
 #include "base/error.h"
 
 #include <stdbool.h>
 
-// What TRACTRIX_ASSUME of the environment asks for: words, each once, e.g. "hardware groups=7".
+// The words of the environment variable TRACTRIX_ASSUME, each at most once, e.g. "hardware
+// groups=7".
 typedef struct Assumptions {
-    bool hardware; // "hardware": sizes, shaders and ways as on a GPU, also on a CPU driver
-    int groups;    // "groups=N": at most so many work groups side by side; 0: as the driver allows
-    int side_px;   // "side=N": framebuffers of at most so many pixels across; 0: as the driver
-    int ulps;      // "ulps=N": sqrt, exp, log, sin and their like are off by N units in the last
-                   // place (glsl/common/perturb.glsl); 0: as the driver has them
+    bool hardware; // "hardware": work sizes, shaders and code paths as on a GPU, even on a CPU
+                   // driver
+    int groups;    // "groups=N": most work groups side by side; 0: the driver's limit
+    int side_px;   // "side=N": most pixels across a framebuffer; 0: the driver's limit
+    // "ulps=N": errors of sqrt, exp, log, sin and similar functions, in units of the last place
+    // (glsl/common/perturb.glsl); 0: the driver's.
+    int ulps;
 } Assumptions;
 
-// RESULT_USAGE with the word that is not known. All 0 without the variable.
+// RESULT_USAGE with an unknown word. All 0 if the variable is not set.
 Result assumptions_read(Assumptions *assumptions, Error *error);
 
-// Takes the switch --assume-hardware, which no help names, out of argv: as "hardware" does, in this
-// process and those that it starts. RESULT_FAILED without memory.
+// Removes the switch --assume-hardware, which the help does not list, from argv. It acts like
+// "hardware" in this process and those that it starts. RESULT_FAILED when memory is short.
 Result assumptions_take_option(int *argc, char **argv, Error *error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The room gpu: OpenGL without windows. It takes a driver (EGL or OSMesa) and the shaders of glsl/,
-// and hands on a context (this file), buffers, timers and built programs (shader.h).
+// The room gpu: OpenGL without windows. Input: a driver (EGL or OSMesa) and the shaders of glsl/.
+// Output: a context (this file), buffers, timers and programs (shader.h).
 //
 // This file: the context, 4.3 core or better, by EGL without a window system or by OSMesa.
 #pragma once
@@ -21,66 +21,68 @@
 
 typedef struct GpuOptions {
     Backend backend;
-    const char *device;    // as gpu_device_is has it; NULL or "": the best one
+    const char *device;    // a name for gpu_device_is; NULL or "": the best device
     bool software;         // only CPU drivers
-    bool require_hardware; // no CPU driver
-    FILE *debug;           // KHR_debug context, whose messages go here; NULL: an ordinary one
+    bool require_hardware; // no CPU drivers
+    FILE *debug;           // stream for the messages of a KHR_debug context; NULL: an ordinary
+                           // context
 } GpuOptions;
 
-// What the driver allows, and what suits it, read once after the context is made. Bytes unless said
-// otherwise.
+// Limits of the driver and sizes that suit it, read once after creating the context. Bytes unless
+// stated otherwise.
 typedef struct GpuLimits {
     int64_t storage_block;   // largest SSBO range that a shader can see
     int64_t texture_texels;  // largest buffer texture, in texels
     int framebuffer_side_px; // largest width and height
-    int work_groups;         // side by side in a dispatch
-    GpuSizes sizes;          // by the device's kind
+    int work_groups;         // side by side in one dispatch
+    GpuSizes sizes;          // by the kind of device
 } GpuLimits;
 
-// A current context. Everything else calls GL only while one exists, on the thread that made it; a
-// thread has one at a time.
+// A current context. All other functions call GL only while it exists, on the thread that created
+// it; a thread has one at a time.
 typedef struct Gpu {
     GpuLimits limits;
-    bool software;       // a CPU driver, judged by GL_RENDERER
-    int ulps;            // by which its maths is made wrong; 0: as it is
-    GpuKind kind;        // what decisions go by: of `software`, unless hardware is assumed
+    bool software;       // a CPU driver, according to GL_RENDERER
+    int ulps;            // artificial error of its maths; 0 if none
+    GpuKind kind;        // kind for decisions; follows `software` unless hardware is assumed
     char renderer[256];  // GL_RENDERER
     char version[256];   // GL_VERSION
     char vendor[128];    // GL_VENDOR
-    char processor[256]; // the CPU's name: images and times of a CPU driver depend on it
-    char path[64];       // the way in: "EGL device 0", "EGL surfaceless", "OSMesa"
+    char processor[256]; // name of the CPU, which determines images and times of a CPU driver
+    char path[64];       // how it was created: "EGL device 0", "EGL surfaceless", "OSMesa"
     char platform[PLATFORM_BYTES];
-    Error passed_over; // why hardware was not taken, if there are signs of any and this is a
-                       // CPU driver that nobody asked for; "": no
+    // Why hardware was not used, if there are signs of it and this is a CPU driver that nobody
+    // asked for; otherwise "".
+    Error passed_over;
     GpuIdentity identity;
-    EglContext egl;               // zeroed: not by EGL, or borrowed
-    struct GpuOsMesa *osmesa;     // NULL: not by OSMesa
+    EglContext egl;               // zeroed if not created by EGL, or borrowed
+    struct GpuOsMesa *osmesa;     // NULL if not created by OSMesa
     struct GpuUniforms *uniforms; // owned
-    // Owned: what scenes share that are simulated and drawn one after the other, or side by side.
-    Stock *programs; // shaders that are built (shader.h)
-    Stock *tables;   // of shading (draw/scatter_tables.h)
+    // Owned: objects shared by scenes that are simulated and drawn in this context.
+    Stock *programs; // built shaders (shader.h)
+    Stock *tables;   // tables for shading (draw/scatter_tables.h)
 } Gpu;
 
-// Makes a context and makes it current, as the environment's assumptions have it (gpu/assume.h).
-// Order: EGL devices, hardware before software; EGL surfaceless; OSMesa. RESULT_NO_GL with one line
-// that says what was tried, why it failed and which package helps.
+// Creates a context and makes it current, respecting the assumptions of the environment
+// (gpu/assume.h). Tries EGL devices (hardware before software), then EGL surfaceless, then OSMesa.
+// RESULT_NO_GL with one line that says what was tried, why it failed and which package helps.
 Result gpu_create(Gpu *gpu, const GpuOptions *options, Error *error);
 void gpu_destroy(Gpu *gpu);
 
-// The same where the context is gone with all that it had: frees memory alone.
+// Like gpu_destroy, if the context and its objects no longer exist: only frees memory.
 void gpu_lose(Gpu *gpu);
 
-// The same for a context of somebody else's that is current on this thread, by EGL or GLX: it stays
-// his. RESULT_NO_GL if there is none, or it offers too little.
+// Uses a context of the caller, current on this thread by EGL or GLX; the caller keeps it.
+// RESULT_NO_GL if there is none, or if it offers too little.
 Result gpu_borrow(Gpu *gpu, Error *error);
 
-// Of a borrowed context: what is called between them are this program's calls. gpu_enter fails with
-// RESULT_NO_GL if no context is current; it forgets errors and bindings that were there.
-// gpu_leave puts defaults back that drawing changes (tractrix_device_borrow).
+// For a borrowed context: between these two calls the program uses GL. gpu_enter discards pending
+// errors and remembered bindings, and fails with RESULT_NO_GL if no context is current. gpu_leave
+// restores the defaults that drawing changes (tractrix_device_borrow).
 Result gpu_enter(const Gpu *gpu, Error *error);
 void gpu_leave(void);
 
-// Prints each EGL device and other way in: number, renderer, version, and below them vendor, PCI
-// address, UUID, memory and node as far as they are known; or why it can't be used. RESULT_NO_GL if
+// Prints each EGL device and other way to a context: number, renderer and version; below them
+// vendor, PCI address, UUID, memory and node, if known; or why it cannot be used. RESULT_NO_GL if
 // none works.
 Result gpu_list_devices(FILE *stream, Error *error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// GL buffers, and the buffer textures through which shaders read them.
+// GL buffers, and buffer textures through which shaders read them.
 #pragma once
 
 #include "base/error.h"
@@ -7,26 +7,26 @@
 
 #include <epoxy/gl.h>
 
-// `texture` shows the buffer as a buffer texture, 0: there is none. CPU drivers fetch a vec4 from
-// one in a quarter of the time that a load from a storage buffer takes.
+// `texture` is a buffer texture of the buffer, 0 if there is none. On CPU drivers, a fetch of a
+// vec4 from it takes a quarter of the time of a load from a storage buffer.
 typedef struct GpuBuffer {
     GLuint buffer, texture;
     int64_t size; // bytes
 } GpuBuffer;
 
-// Makes a buffer of `size` bytes with `data` (NULL: undefined) and, if `texel_format` is not 0
-// (GL_RGBA32F, GL_R32UI, ...), its texture. RESULT_FAILED with `what` in the message if it is
-// larger than the driver allows or memory is short.
+// Creates a buffer of `size` bytes with `data` (NULL: undefined) and, if `texel_format` is not 0
+// (GL_RGBA32F, GL_R32UI, ...), its texture. RESULT_FAILED, naming `what`, if it exceeds the
+// driver's limits or memory is short.
 Result gpu_buffer_create(GpuBuffer *buffer, const GpuLimits *limits, const char *what, int64_t size,
                          const void *data, GLenum texel_format, Error *error);
 
-// The same for a buffer that shaders write by ranges (glBindBufferRange), each no larger than the
-// driver allows, and read as a texture.
+// The same for a buffer that shaders read as a texture and write by ranges (glBindBufferRange)
+// within the driver's limit.
 Result gpu_buffer_create_pieces(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
                                 int64_t size, GLenum texel_format, Error *error);
 
-// A buffer of at least `size` bytes: a smaller one is made anew, its content undefined. Otherwise
-// as gpu_buffer_create.
+// Makes sure that the buffer has at least `size` bytes. A smaller buffer is replaced, with
+// undefined content. Otherwise like gpu_buffer_create.
 Result gpu_buffer_reserve(GpuBuffer *buffer, const GpuLimits *limits, const char *what,
                           int64_t size, GLenum texel_format, Error *error);
 void gpu_buffer_destroy(GpuBuffer *buffer);
@@ -34,11 +34,11 @@ void gpu_buffer_destroy(GpuBuffer *buffer);
 // Sets every 4 bytes to `word`. Only queues GPU work.
 void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word);
 
-// A copy of the content, to be freed; NULL when memory is short, here or in the driver, or an
-// earlier call has left an error. Waits for the GPU.
+// A copy of the content, which the caller frees. NULL when memory is short, here or in the driver,
+// or if an earlier call left an error. Waits for the GPU.
 void *gpu_buffer_read(const GpuBuffer *buffer);
 
-// Binds as storage at a BIND_..._OUT point, or the texture at a BIND_ texture unit
+// Binds the buffer as storage at a BIND_..._OUT point, or its texture at a BIND_ texture unit
 // (glsl/common/shared.h).
 void gpu_buffer_bind_storage(const GpuBuffer *buffer, GLuint binding);
 void gpu_buffer_bind_texture(const GpuBuffer *buffer, GLuint unit);

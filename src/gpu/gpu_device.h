@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which device a context draws on: what tells equal GPUs apart, and why hardware cannot be used.
+// The device behind a context: its identity, which distinguishes equal GPUs, and reasons why
+// hardware cannot be used.
 #pragma once
 
 #include "base/error.h"
@@ -7,10 +8,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// A device that EGL enumerates. Texts are empty where they are not known.
+// A device listed by EGL. Texts are empty if unknown.
 typedef struct GpuDevice {
     void *egl;     // EGLDeviceEXT
-    bool software; // says of itself that it is a CPU driver
+    bool software; // claims to be a CPU driver
     char node[64]; // "/dev/dri/renderD128"
     char pci[32];  // "0000:01:00.0"
 } GpuDevice;
@@ -22,29 +23,29 @@ typedef struct GpuDevices {
     int count;
 } GpuDevices;
 
-// What a current context says of its device.
+// The identity of a current context's device.
 typedef struct GpuIdentity {
-    char node[64], pci[32]; // as GpuDevice has them
-    char uuid[40];          // GL_EXT_memory_object; "": not known
-    int64_t memory;         // bytes of the device's own; 0: not known
+    char node[64], pci[32]; // as in GpuDevice
+    char uuid[40];          // by GL_EXT_memory_object; "" if unknown
+    int64_t memory;         // bytes of its own memory; 0 if unknown
 } GpuIdentity;
 
-// The address of the PCI device behind a character device, as the folder `sys` ("/sys") has it;
-// false: there is none.
+// Finds the PCI address of a character device in `sys` ("/sys"); false if there is none.
 bool gpu_device_find_pci(const char *sys, unsigned major, unsigned minor, char pci[32]);
 
-// Fills in what the system says of the device's node.
+// Fills in what the system knows about the device's node.
 void gpu_device_look_up(GpuDevice *device);
 
-// What a context that is current by EGL says. `device` NULL: not of an enumerated one.
+// The identity of a context that is current by EGL. `device` is NULL if it does not belong to a
+// listed device.
 GpuIdentity gpu_device_identify(const GpuDevice *device);
 
-// Whether `name` means the device of this number, renderer and vendor: its number, a part of its
-// renderer's or vendor's name (case does not count), its PCI address (the domain 0000: may be left
-// out), its node, or the beginning of its UUID, of 4 characters at least.
+// Whether `name` selects the device with this number, renderer and vendor: by number, by part of
+// the renderer's or vendor's name (ignoring case), by PCI address (the domain 0000: is optional),
+// by node, or by at least the first 4 characters of its UUID.
 bool gpu_device_is(const char *name, int number, const char *renderer, const char *vendor,
                    const GpuIdentity *identity);
 
-// Why a GPU that the system has is none of EGL's devices: a node of `dev` ("/dev") that this user
-// may not open, a driver that is not installed. No text if there is no sign of a GPU.
+// Explains why EGL does not list a GPU of the system: this user may not open a node in `dev`
+// ("/dev"), or a driver is not installed. Empty if there is no sign of a GPU.
 void gpu_device_explain(const char *dev, Error *why);

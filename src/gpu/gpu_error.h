@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// GL errors, told with the pass that made them.
+// GL errors, reported with the pass that caused them.
 #pragma once
 
 #include "base/error.h"
 
-// Takes an error that is pending as that of `pass`, a string constant, for the next gpu_check. The
-// first one counts. GpuTimer's spans call it. Waits for nothing.
+// Attributes a pending error to `pass`, a string constant, for the next gpu_check. The first error
+// counts. GpuTimer's spans call it. Does not wait.
 void gpu_error_note(const char *pass);
 
-// Drops what is pending: it was not this program's.
+// Discards pending errors that this program did not cause.
 void gpu_error_forget(void);
 
-// RESULT_FAILED naming `what`, and the pass if it was noted, if a GL error has come up since the
-// last call (out of memory, ...). Waits for nothing.
+// RESULT_FAILED, naming `what` and, if noted, the pass, if a GL error has occurred since the last
+// call (out of memory, ...). Does not wait.
 Result gpu_check(const char *what, Error *error);

@@ -6,7 +6,7 @@
 
 typedef struct GpuOsMesa GpuOsMesa;
 
-// Makes a 4.3 core context and makes it current, and fills libepoxy's pointers from it.
-// RESULT_NO_GL with what is missing, RESULT_FAILED without memory; then *mesa is NULL.
+// Creates a 4.3 core context, makes it current and sets libepoxy's function pointers from it. On
+// RESULT_NO_GL (names what is missing) and RESULT_FAILED (no memory), *mesa is NULL.
 Result gpu_osmesa_create(GpuOsMesa **mesa, Error *error);
 void gpu_osmesa_destroy(GpuOsMesa *mesa);

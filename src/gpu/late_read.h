@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: MIT
-// Bytes on their way back from the GPU: they are copied to a buffer behind all that is queued, and
-// a fence tells when they have arrived, so that nobody has to wait for more than that.
+// Reads bytes from the GPU without blocking. They are copied to a buffer after everything that is
+// queued; a fence tells when they have arrived, so the program waits for no later work.
 #pragma once
 
 #include "gpu/gpu_buffer.h"
 
-// A zeroed struct has nothing under way and may be destroyed.
+// A zeroed struct has no read in progress and may be destroyed.
 typedef struct LateRead {
     GLuint buffer;
     int64_t room; // bytes
-    GLsync fence; // NULL: nothing has been sent
+    GLsync fence; // NULL if nothing was sent
 } LateRead;
 
-// Makes room for so many bytes and begins anew. RESULT_FAILED with `what` if memory is short.
+// Allocates `size` bytes and starts a new read. RESULT_FAILED with `what` if memory is short.
 Result late_read_begin(LateRead *read, const char *what, int64_t size, Error *error);
 
-// Queues copies to byte `at`: of the first `size` bytes of a buffer, which shaders may have
-// written, or of the framebuffer's pixels as RGBA of type `type`.
+// Queues copies to byte `at`: the first `size` bytes of a buffer (shaders may have written it), or
+// the framebuffer's pixels as RGBA of type `type`.
 void late_read_buffer(LateRead *read, int64_t at, const GpuBuffer *from, int64_t size);
 void late_read_pixels(LateRead *read, int64_t at, GLuint frame, int width, int height, GLenum type);
 
-// Sets the fence, and has the driver begin with all that is queued.
+// Sets the fence and flushes the queue.
 void late_read_send(LateRead *read);
 
-// The bytes, once they are there, until late_read_close. Also the fence is gone then. RESULT_FAILED
-// with `what` if they do not come.
+// Waits for the bytes, which are valid until late_read_close, and deletes the fence. RESULT_FAILED
+// with `what` if they do not arrive.
 Result late_read_open(LateRead *read, const char *what, const void **bytes, Error *error);
 void late_read_close(LateRead *read);
 void late_read_destroy(LateRead *read);

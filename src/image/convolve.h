@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Convolution of a plane of floats by kernels that are a product of one in x and one in y.
+// Convolution of a plane of floats with separable kernels.
 #pragma once
 
 enum { CONVOLVE_MOST_RADIUS = 160 };
@@ -13,12 +13,12 @@ typedef struct ConvolveKernel {
 // exp(-x^2 / (2 sigma^2)), sampled and scaled to the sum 1. `sigma` > 0 in pixels.
 void convolve_make_gauss(ConvolveKernel *kernel, int radius, double sigma);
 
-// Its first (order 1) or second (2) derivative, up to the sign of the first: the negative weights
-// scaled to the sum -1, the positive ones to 1. radius > sigma.
+// The first (order 1) or second (2) derivative of the Gaussian; the sign of the first is arbitrary.
+// Negative weights are normalised to the sum -1, positive ones to 1. radius > sigma.
 void convolve_make_derivative(ConvolveKernel *kernel, int order, int radius, double sigma);
 
-// Correlates `in` [height][width] along x or y into `out`, which must be another array; beyond the
-// border lies the nearest pixel.
+// Correlates `in` [height][width] along x or y into `out`, which must be a different array; pixels
+// beyond the border repeat the nearest pixel.
 void convolve_apply_x(float *out, const float *in, int width, int height,
                       const ConvolveKernel *kernel);
 void convolve_apply_y(float *out, const float *in, int width, int height,

@@ -9,44 +9,43 @@
 
 #include <stdbool.h>
 
-// What is known of each pixel beside its colour, as --aov draws it: an IMAGE_FLOAT of 3 channels.
+// Data of each pixel besides its colour, as drawn by --aov: an IMAGE_FLOAT of 3 channels.
 typedef enum ExrLayer {
     EXR_COVERAGE, // share of the pixel, grey
-    EXR_DEPTH,    // m, grey; 0: nothing
-    EXR_TANGENT,  // (1 + t) / 2; black: nothing
-    EXR_STRAND,   // three bytes over 255; black: nothing
+    EXR_DEPTH,    // m, grey; 0 if empty
+    EXR_TANGENT,  // (1 + t) / 2; black if empty
+    EXR_STRAND,   // three bytes, divided by 255; black if empty
     EXR_LAYERS
 } ExrLayer;
 
 typedef struct ExrFile {
     const Image *image;      // IMAGE_FLOAT: linear, primaries of Rec. 709, premultiplied
-    const Image *layers;     // [EXR_LAYERS] of the same size; NULL: none
-    bool floats;             // 32 bits a channel; else 16, but for depth
-    const ImageTexts *texts; // become attributes of type string; NULL: none
-    // Attributes of these names, columns of a matrix for column vectors; NULL: none.
+    const Image *layers;     // [EXR_LAYERS] of the same size; NULL if there are none
+    bool floats;             // 32 bits per channel, otherwise 16 (depth always has 32)
+    const ImageTexts *texts; // written as attributes of type string; NULL if there are none
+    // Attributes of these names, columns of a matrix for column vectors; NULL if there are none.
     const float (*world_to_camera)[4], (*world_to_ndc)[4];
 } ExrFile;
 
-// Channels R, G, B and A (1 where the image has no alpha); of layers coverage, Z (float),
-// tangent.X, .Y and .Z (unit vectors in the world, 0: nothing), id (uint of 24 bits, 0: nothing).
-// Blocks of 16 rows, ZIP. A pixel that has no strand in one of the last
-// three layers has none in all. What a half cannot hold becomes infinite. The same content gives
-// the same bytes. RESULT_FAILED when memory is short or the library refuses. Free `exr` with
-// bytes_destroy.
+// Writes the channels R, G, B and A (1 if the image has no alpha) and those of the layers:
+// coverage, Z (float), tangent.X, .Y and .Z (unit vectors in the world, 0 if empty), id (24 bits in
+// a uint, 0 if empty). Blocks of 16 rows, ZIP. If one of the last three layers is empty at a pixel,
+// all three are. Values beyond the range of half become infinite. The same content gives the same
+// bytes. RESULT_FAILED when memory is short or the library fails. Free `exr` with bytes_destroy.
 Result exr_file_encode(const ExrFile *file, Bytes *exr, Error *error);
 
-// Whether the bytes begin as an EXR file does.
+// Whether the bytes begin like an EXR file.
 bool exr_file_is(const Bytes *file);
 
-// Reads R, G, B and A where it is there, of the first part, scanlines or tiles (their largest
-// level), of any kind of number. Where these are missing: of the first layer that has them
-// (diffuse.R), else Y as grey, else of a file with one channel that as grey. An IMAGE_FLOAT of the
-// display window; what the data window leaves out is 0, and what lies outside is cut. From bytes in
-// memory; `path` is for the message. RESULT_BAD_INPUT with path and reason: damaged, deep, of
-// subsampled channels, compressed in a way that the library's core cannot undo (DWAA, DWAB), of
-// more than 2^28 pixels, of pixels that would take more than 64 times its size and 64 MiB, or with
-// a number that is not finite.
+// Reads R, G, B and, if present, A of the first part, from scanlines or tiles (largest level), of
+// any number type. If they are missing, uses the first layer that has them (diffuse.R), otherwise Y
+// as grey, otherwise the only channel of the file as grey. The result is an IMAGE_FLOAT of the
+// display window; it is 0 outside of the data window, and data outside the display window is
+// dropped. `path` is for messages. RESULT_BAD_INPUT with path and reason: damaged, deep, subsampled
+// channels, a compression that the library's core does not support (DWAA, DWAB), more than 2^28
+// pixels, pixels that would take more than 64 times the file's size plus 64 MiB, or a number that
+// is not finite.
 Result exr_file_decode(Image *image, const Bytes *file, const char *path, Error *error);
 
-// Attributes of type string, those with a key that image_texts_set takes.
+// Reads the attributes of type string whose key image_texts_set accepts.
 Result exr_file_decode_texts(ImageTexts *texts, const Bytes *file, const char *path, Error *error);

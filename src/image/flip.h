@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
-// FLIP for low dynamic range: P. Andersson, J. Nilsson, T. Akenine-Moeller, M. Oskarsson,
-// K. Astroem, M. D. Fairchild, "FLIP: A Difference Evaluator for Alternating Images", Proceedings
-// of the ACM on Computer Graphics and Interactive Techniques 3 (2), 2020. How different two
-// images look, from 0 to 1, when one flips between them at a given distance.
+// FLIP for low dynamic range: P. Andersson, J. Nilsson, T. Akenine-Moeller, M. Oskarsson, K.
+// Astroem, M. D. Fairchild, "FLIP: A Difference Evaluator for Alternating Images", Proceedings of
+// the ACM on Computer Graphics and Interactive Techniques 3 (2), 2020. It is the visible
+// difference, from 0 to 1, when one flips between two images at a given viewing distance.
 #pragma once
 
 #include "image/float_image.h"
 
-// The paper's monitor: 3840 pixels on 0.7 m, seen from 0.7 m.
+// The paper's monitor: 3840 pixels over 0.7 m, seen from 0.7 m.
 static const double FLIP_PIXELS_PER_DEGREE = 67;
 
-// Writes the error of each pixel to `map` [height][width], 0 to 1, and their mean to `mean`. The
-// images have one size; levels beyond 0..255 are clamped. `pixels_per_degree`: 1 to 1000. Equal
-// images give exactly 0. RESULT_FAILED when memory is short.
+// Writes the error of each pixel (0 to 1) to `map` [height][width] and the mean to `mean`. The
+// images must have the same size; levels beyond 0..255 are clamped. `pixels_per_degree`: 1 to 1000.
+// Equal images give exactly 0. RESULT_FAILED when memory is short.
 Result flip_compare(float *map, double *mean, const FloatImage *a, const FloatImage *b,
                     double pixels_per_degree, Error *error);
 
-// The parts, as tests want them. Linear RGB (0..1) to the opponent space YCxCz (section 4.1.1) and
-// to L*a*b* with a*, b* scaled by 0.01 L* (Hunt's effect, section 4.1.2).
+// Parts of FLIP, for tests. Converts linear RGB (0..1) to the opponent space YCxCz (section 4.1.1),
+// and to L*a*b* with a*, b* scaled by 0.01 L* (Hunt's effect, section 4.1.2).
 void flip_opponent(double ycc[3], const double rgb[3]);
 void flip_hunt_lab(double lab[3], const double rgb[3]);
 
-// |dL| + sqrt(da^2 + db^2) (equation 3), and the colour difference that it becomes, 0 to 1
-// (section 4.1.3).
+// |dL| + sqrt(da^2 + db^2) (equation 3), and the resulting colour difference, 0 to 1 (section
+// 4.1.3).
 double flip_hyab(const double a[3], const double b[3]);
 double flip_color_difference(double hyab);

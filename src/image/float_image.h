@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An image made ready to be measured: opaque colours as floats.
+// An image prepared for measuring: opaque colours as floats.
 #pragma once
 
 #include "base/error.h"
@@ -7,23 +7,23 @@
 
 #include <stdbool.h>
 
-// Colours are sRGB in levels, 0 to 255 whatever the file's depth, so that those of 8-bit images are
-// exact. Those of floats are the linear values through sRGB's curve, which goes on above 1 and,
-// mirrored, below 0: nothing is clipped here.
+// Colours are sRGB in levels from 0 to 255, for any bit depth of the file, so 8-bit images are
+// exact. Linear floats go through sRGB's curve, which is extended above 1 and mirrored below 0;
+// nothing is clipped.
 typedef struct FloatImage {
     int width, height;
     float *rgb; // [height][width][3], owned
 } FloatImage;
 
-// Reads a file by its content, PNG of 8 or 16 bits, PFM or EXR, at full depth. RESULT_BAD_INPUT
-// with path and reason; RESULT_FAILED when memory is short.
+// Reads a file at full depth; its content decides between PNG (8 or 16 bits), PFM and EXR.
+// RESULT_BAD_INPUT with path and reason; RESULT_FAILED when memory is short.
 Result float_image_read_image(Image *image, const char *path, Error *error);
 
-// Lays the image over a uniform background, whose channels are all `level`; blending is in sRGB
-// values, as in browsers, but of floats in light. Without alpha the background does not matter.
-// RESULT_FAILED when memory is short; the float image is zeroed then.
+// Composites the image over a uniform background whose channels are all `level`: in sRGB values, as
+// in browsers, or in linear light for images of floats. Without alpha the background has no effect.
+// On RESULT_FAILED (memory is short) the float image is zeroed.
 Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error);
 void float_image_destroy(FloatImage *floats);
 
-// Linear light of a level between 0 and 255; others are clamped to that.
+// Linear light of a level, which is clamped to 0..255.
 double float_image_linear(float level);

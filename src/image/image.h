@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The room image: images on the CPU. It takes pixels or files (PNG, PFM), and hands on files,
-// contact sheets, and how much two images differ (compare.h, flip.h).
+// The room image: images on the CPU. Input: pixels or files (PNG, PFM, EXR). Output: files, contact
+// sheets, and measures of the difference of two images (compare.h, flip.h).
 //
-// This file: an image in memory, top row first, no padding between rows.
+// This file: an image in memory, top row first, without padding between rows.
 #pragma once
 
 #include "base/error.h"
@@ -27,14 +27,14 @@ Result image_create_kind(Image *image, int width, int height, int channels, Imag
                          Error *error);
 void image_destroy(Image *image);
 
-// Bytes of a channel, and of all pixels.
+// Bytes of one channel, and of all pixels.
 size_t image_channel_size(ImageKind kind);
 size_t image_size(const Image *image);
 
-// Whether both have pixels, and the same ones.
+// Whether both images have pixels, and these are equal.
 bool image_is_equal(const Image *a, const Image *b);
 
-// IEC 61966-2-1, between 0..1 and 0..1; what is linear is clamped to that first.
+// IEC 61966-2-1, between 0..1 and 0..1; linear values are clamped first.
 double image_linear_from_srgb(double value);
 double image_srgb_from_linear(double value);
 
@@ -42,15 +42,15 @@ double image_srgb_from_linear(double value);
 typedef struct ImageSheet {
     Image image;
     int columns, rows;
-    int count; // tiles that are filled
+    int count; // tiles filled so far
 } ImageSheet;
 
-// Room for columns x rows tiles of this size and kind; those that are never filled are black, or
-// transparent. RESULT_USAGE if the sheet has 1 GiB or more, RESULT_FAILED when memory is short.
-// Destroying a zeroed struct is legal.
+// Allocates columns x rows tiles of this size and kind; tiles that are never filled are black or
+// transparent. RESULT_USAGE if the sheet has 1 GiB or more, RESULT_FAILED when memory is short. A
+// zeroed struct may be destroyed.
 Result image_sheet_create(ImageSheet *sheet, int columns, int rows, const Image *tile,
                           Error *error);
 void image_sheet_destroy(ImageSheet *sheet);
 
-// Fills the next tile, left to right and top to bottom. There must be one left.
+// Fills the next tile, from left to right and top to bottom. One must be left.
 void image_sheet_add(ImageSheet *sheet, const Image *tile);

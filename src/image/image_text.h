@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Words that travel with an image, by key: "Renderer" -> "llvmpipe (LLVM 15.0.6, 256 bits)". Text
-// chunks of PNG files.
+// Texts stored with an image, by key, such as "Renderer" -> "llvmpipe (LLVM 15.0.6, 256 bits)".
+// They become text chunks of PNG files.
 #pragma once
 
 #include "base/error.h"
@@ -11,25 +11,24 @@
 enum { IMAGE_TEXT_KEY_BYTES = 80 }; // with the zero; PNG's limit
 
 typedef struct ImageText {
-    char key[IMAGE_TEXT_KEY_BYTES]; // 1 to 79 letters of ASCII, single spaces inside only
+    char key[IMAGE_TEXT_KEY_BYTES]; // 1 to 79 ASCII characters; single spaces, only inside
     char *value;                    // UTF-8, owned
 } ImageText;
 
-// In the order in which they were set. A zeroed struct is an empty list and may be destroyed.
+// A list in the order of setting. A zeroed struct is an empty list and may be destroyed.
 typedef struct ImageTexts {
     ImageText *list;
     size_t count;
 } ImageTexts;
 
-// Whether a key is as above.
+// Whether a key has the form above.
 bool image_texts_is_key(const char *key);
 
-// Adds, or replaces in place what the key had. Control characters other than newline become spaces,
-// and each byte that is not UTF-8 a question mark. RESULT_FAILED when memory is short or the key is
-// not as above.
+// Sets the value of a key. Control characters other than newline become spaces, and each byte that
+// is not UTF-8 becomes a question mark. RESULT_FAILED when memory is short or the key is invalid.
 Result image_texts_set(ImageTexts *texts, const char *key, const char *value, Error *error);
 
-// The value, NULL if there is none. Valid until the next change.
+// The value, NULL if there is none; valid until the next change.
 const char *image_texts_find(const ImageTexts *texts, const char *key);
 
 Result image_texts_copy(ImageTexts *texts, const ImageTexts *from, Error *error);

@@ -5,17 +5,17 @@
 #include "image/image.h"
 #include "image/tone.h"
 
-// The exposure (EV) that shows hair of the colour METER_GREY as just that. `image` is a drawing of
-// such hair under the lights and before the camera that count, `hair` the share of each pixel that
-// the hair covers, in its first channel; both IMAGE_FLOAT, of one size, the light of 4 channels,
+// The exposure (EV) at which hair of the colour METER_GREY shows as METER_GREY. `image` is a
+// drawing of such hair with the actual lights and camera; the first channel of `hair` is the share
+// of each pixel that hair covers. Both are IMAGE_FLOAT of the same size; `image` has 4 channels of
 // linear light, premultiplied.
 //
-// The mean luminance that `tone` shows of the pixels that are more than half hair comes to
-// METER_GREY; but all of what is more than half covered, by hair or by a mesh, except for the
-// brightest METER_BRIGHT, stays below METER_WHITE. Where no pixel is more than half hair, all that
-// are more than half covered are taken for it. The result is a multiple of METER_STEP, so that a
-// difference in rounding does not matter; 0 if no pixel counts or they are too dark for 20 EV.
-// RESULT_FAILED when memory is short.
+// The exposure makes the mean display luminance (through `tone`) of all pixels that are more than
+// half hair equal to METER_GREY. But all pixels that are more than half covered, by hair or mesh,
+// must stay below METER_WHITE, except for the brightest METER_BRIGHT of them. If no pixel is more
+// than half hair, all pixels that are more than half covered are used instead. The result is a
+// multiple of METER_STEP, so that rounding differences do not matter; it is 0 if there are no such
+// pixels or if they are too dark for 20 EV. RESULT_FAILED when memory is short.
 Result meter_exposure(float *exposure, const Image *image, const Image *hair, Tone tone,
                       Error *error);
 

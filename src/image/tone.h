@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// How light becomes colour (glsl/draw/display.glsl), and back.
+// Tone mapping from light to colour (glsl/draw/display.glsl), and its inverse.
 #pragma once
 
 #include "base/params.h"
 
-// What display.glsl's macro TONE may be beside a Tone: light stays as it is.
+// A value of display.glsl's macro TONE besides those of Tone: light stays linear.
 enum { TONE_LIGHT = TONE_FILMIC + 1 };
 
-// Light (>= 0) of one channel to a linear colour value.
+// Maps the light (>= 0) of one channel to a linear colour value.
 double tone_map(Tone tone, double light);
 
-// The light that becomes `value`, 0..1.
+// The light that maps to `value`, 0..1.
 double tone_unmap(Tone tone, double value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Images as browsers show them.
+// Images for browsers.
 #pragma once
 
 #include "base/bytes.h"
@@ -8,16 +8,16 @@
 
 #include <stdbool.h>
 
-// Whether browsers show the pixels of these bytes as they are: a PNG file without chunks of gamma,
-// primaries, profile or animation (sRGB's own chunk is fine).
+// Whether browsers show the pixels unchanged: a PNG file without chunks for gamma, primaries,
+// profile or animation (an sRGB chunk is fine).
 bool picture_is_plain(const Bytes *file);
 
-// The image as IMAGE_8: 16 bits rounded; floats through sRGB's curve, their colours divided by
-// alpha and clamped to 0..1. RESULT_FAILED when memory is short.
+// Converts the image to IMAGE_8: rounds 16 bits; floats are divided by alpha, clamped to 0..1 and
+// go through sRGB's curve. RESULT_FAILED when memory is short.
 Result picture_create(Image *picture, const Image *image, Error *error);
 
-// An IMAGE_8 made smaller, with its proportions, to fit into width x height, each pixel the mean of
-// those it covers in linear light, weighted with alpha; never larger than it is. RESULT_FAILED when
+// Scales an IMAGE_8 down to fit into width x height, keeping its proportions; never enlarges it.
+// Each pixel is the mean of those it covers, in linear light, weighted by alpha. RESULT_FAILED when
 // memory is short.
 Result picture_create_thumbnail(Image *thumbnail, const Image *picture, int width, int height,
                                 Error *error);

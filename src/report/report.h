@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The room report: pages for people, one HTML file each, that need no network and no other file.
-// It takes a JSON value and images, and hands on a page: page.html with the style and the script
-// of all pages (page.css, page.js) and of its kind (compare.* or bench.*), the data as one block of
-// JSON, the images behind it, each a block of base64 that the script decodes when it is looked at.
-// picture.h makes images that browsers show, shell_words.h writes commands that a reader can copy.
+// The room report: self-contained HTML pages for people, which need no network and no other file.
+// Input: a JSON value and images. Output: page.html with the style and script of all pages
+// (page.css, page.js) and of its kind (compare.* or bench.*), the data as one JSON block, and each
+// image as a base64 block after it, which the script decodes when it is viewed. picture.h converts
+// images for browsers, shell_words.h writes commands for copying.
 //
-// This file: the page. Its content security policy names the scripts and styles by their hashes and
-// allows nothing from elsewhere, so no text of the data can become a script.
+// This file: the page. Its content security policy lists scripts and styles by hash and allows
+// nothing else, so no text of the data can run as a script.
 #pragma once
 
 #include "base/bytes.h"
@@ -17,7 +17,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-// A file of src/report, embedded by scripts/embed-text. The table ends with zeros.
+// A file of src/report, embedded by scripts/embed-text. The table is terminated by zeros.
 typedef struct ReportText {
     const char *name; // "page.css"
     const char *text;
@@ -25,7 +25,7 @@ typedef struct ReportText {
 } ReportText;
 extern const ReportText REPORT_TEXTS[];
 
-// A page that is being written. Its images wait in a scratch file, as the data stand before them.
+// A page being written. The data must come before the images, so images wait in a scratch file.
 typedef struct Report {
     OutFile file;
     FILE *images;
@@ -39,24 +39,25 @@ typedef struct Report {
 // RESULT_FAILED with path and reason if the file cannot be written.
 Result report_open(Report *report, const char *path, Error *error);
 
-// Adds the bytes of a PNG or JPEG file; *number is what the page's script knows it by, from 0 on.
+// Adds the bytes of a PNG or JPEG file; the page's script refers to it by *number, from 0.
 // RESULT_FAILED if there is no room for it.
 Result report_add_image(Report *report, const Bytes *file, int *number, Error *error);
 
-// Leaves the image of this number out of the page.
+// Omits the image with this number from the page.
 void report_omit_image(Report *report, int number);
 
-// Writes the page of `kind`, "compare" or "bench", with its data (no reference is taken; NULL:
-// memory was short). The file appears complete or not at all; RESULT_FAILED with path and reason.
+// Writes the page of `kind` ("compare" or "bench") with its data (takes no reference; NULL means
+// that memory was short). The file appears complete or not at all; RESULT_FAILED with path and
+// reason.
 Result report_close(Report *report, const char *kind, const json_t *data, Error *error);
 
-// Frees all and leaves no file. Legal for a zeroed report and after report_close.
+// Frees everything and leaves no file. May be called for a zeroed report and after report_close.
 void report_discard(Report *report);
 
 // --- Values for the data.
 
-// A string for any bytes: jansson takes only UTF-8, so bytes that are none become U+FFFD.
+// A string from any bytes. jansson accepts only UTF-8, so invalid bytes become U+FFFD.
 json_t *report_text(const char *text);
 
-// The bytes as base64, for an image so small that it stands in the data; null for none.
+// The bytes as base64, for an image small enough to be part of the data; null if there are none.
 json_t *report_base64(const Bytes *bytes);

@@ -4,12 +4,12 @@
 
 #include <stdio.h>
 
-// Writes one word as bash, zsh and ksh read it: as it is where nothing in it is special, else in
-// single quotes; with control characters or bytes that are no UTF-8 as $'...', which is printable.
+// Writes a word for bash, zsh and ksh: unquoted if it has no special characters, otherwise in
+// single quotes; with control characters or invalid UTF-8 as $'...', which is printable.
 void shell_put_word(FILE *stream, const char *word);
 
-// The words with blanks between them, up to a NULL. Free it. NULL when memory is short.
+// Joins the words up to NULL with blanks. The caller frees the result; NULL when memory is short.
 char *shell_join(const char *const *words);
 
-// The command line of `program`, whose first word is what main got instead of that name.
+// The command line of `program`, which replaces argv[0].
 char *shell_join_line(const char *program, int argc, char **argv);
