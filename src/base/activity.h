@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: MIT
-// What a program is at, on one line of a terminal: a thread draws it while the program reads,
-// uploads or draws for longer than a second, so that no terminal looks dead. One line a process.
+// Shows what a program is doing on one line of a terminal. A thread draws it when reading,
+// uploading or drawing takes longer than a second, so that the terminal does not look dead. One
+// line per process.
 #pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
 
-// Columns of a terminal, at most 200; 80 where that is unknown.
+// Columns of a terminal, at most 200; 80 if unknown.
 int activity_width(FILE *stream);
 
-// From now on the line is shown on `stream` (stderr); not if `quiet`, if the stream is no terminal,
-// or if no thread can be had. All other functions do nothing then.
+// Shows the line on `stream` (stderr) from now on. Not if `quiet`, if the stream is not a terminal,
+// or if no thread can be started; then all other functions do nothing.
 void activity_start(FILE *stream, bool quiet);
 
-// What the program is at ("reading hair.tfx"; at most 100 characters are kept), until it is set
-// again; NULL: nothing that takes long. Seconds count from here. Any thread may call it.
+// Sets the current activity ("reading hair.tfx"; at most 100 characters are kept); NULL: nothing
+// that takes long. Seconds count from this call. Thread-safe.
 void activity_set(const char *what);
 
-// A line that is drawn now and stays in front of what the program is at (base/progress.h); NULL:
-// none, and the line is erased, so that a message can be printed in its place. False: nothing is
-// shown on this stream, and the caller draws for itself.
+// Draws a line that precedes the activity until it is replaced (base/progress.h). NULL erases the
+// line, so that a message can be printed in its place. False if nothing is shown on this stream;
+// then the caller draws the line itself.
 bool activity_line(FILE *stream, const char *line);
 
-// Columns to leave free for what the program is at, on a stream that shows it; else 0.
+// Columns to reserve for the activity on a stream that shows it, otherwise 0.
 int activity_columns(FILE *stream);
 
 // Erases the line and ends the thread.

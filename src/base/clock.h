@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Clocks, in milliseconds since some moment: differences count.
+// Clocks in milliseconds from an arbitrary origin; only differences are meaningful.
 #pragma once
 
 #include <time.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The colours that have a name, wherever a colour is read.
+// Named colours, for all places that read a colour.
 #pragma once
 
 #include <stdbool.h>
@@ -7,8 +7,8 @@
 
 typedef struct ColorName {
     const char *name;
-    const char *css;  // "#6b4a36" (sRGB); NULL: hair has it alone
-    const char *hair; // of hair, as one sees it on a head; NULL: as CSS has it
+    const char *css;  // "#6b4a36" (sRGB); NULL if the name exists only for hair
+    const char *hair; // apparent colour on a head; NULL: as in CSS
 } ColorName;
 
 // The 16 basic colours of CSS (CSS Color Module Level 4, 6.1; "gray" is also "grey"), and colours
@@ -16,6 +16,7 @@ typedef struct ColorName {
 enum { COLOR_NAME_COUNT = 29 };
 extern const ColorName COLOR_NAMES[COLOR_NAME_COUNT];
 
-// The value of a name, in any case, as "#rrggbb": of hair (`of_hair`), or else as CSS has it if it
-// does. NULL: there is no such name, and *nearest, if not NULL, is one that is near or NULL.
+// The value of a name (case-insensitive) as "#rrggbb": that of hair (`of_hair`), otherwise that of
+// CSS if it has one. NULL if there is no such name; *nearest, if not NULL, is then a similar name
+// or NULL.
 const char *colors_find(const char *name, bool of_hair, const char **nearest);

@@ -17,16 +17,17 @@ typedef struct Csv {
     size_t column_count, row_count;
 } Csv;
 
-// Reads the file. RESULT_BAD_INPUT with "FILE:LINE: ..." if a row has not as many fields as the
-// header. After a failure *csv is zero.
+// Reads the file. RESULT_BAD_INPUT with "FILE:LINE: ..." if a row has a different number of fields
+// than the header. After a failure *csv is zero.
 Result csv_read(Csv *csv, const char *path, Error *error);
 void csv_destroy(Csv *csv);
 
-// Column of that name; RESULT_BAD_INPUT naming file and column if it is missing.
+// The column with this name; RESULT_BAD_INPUT with file and column if it is missing.
 Result csv_find(const Csv *csv, const char *name, size_t *column, Error *error);
 
-// The field as it stands in the file; valid until csv_destroy.
+// The field as in the file; valid until csv_destroy.
 const char *csv_text(const Csv *csv, size_t row, size_t column);
 
-// A number, decimal or C hex. RESULT_BAD_INPUT with "FILE:LINE: ..." if the field is none.
+// A number, decimal or C hexadecimal. RESULT_BAD_INPUT with "FILE:LINE: ..." if the field is not a
+// number.
 Result csv_number(const Csv *csv, size_t row, size_t column, double *value, Error *error);

@@ -5,9 +5,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
-// Writes `before` and the shortest of %.6g .. %.9g that reads back as `value`, with a point
-// whatever the locale.
+// Writes `before` and the shortest of %.6g .. %.9g that reads back as `value`, with a decimal point
+// in any locale.
 void decimal_put(FILE *stream, const char *before, float value);
 
-// The shortest decimal number that reads back as `value` (finite), cut at `size`; 16 suffice.
+// Writes the shortest decimal number that reads back as `value` (finite), cut at `size`; 16
+// suffice.
 void decimal_format(float value, char *text, size_t size);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of three doubles. Sums, products and square roots only: the same numbers on every
-// machine.
+// Vectors of three doubles. They use only sums, products and square roots, so results are the same
+// on every machine.
 #pragma once
 
 #include <math.h>
@@ -59,7 +59,7 @@ static inline double double3_distance(const Double3 a, const Double3 b)
     return double3_length(difference);
 }
 
-// Returns the length that it had; a vector of length 0 stays.
+// Returns the previous length; a vector of length 0 stays.
 static inline double double3_normalize(Double3 v)
 {
     double length = double3_length(v);
@@ -67,7 +67,7 @@ static inline double double3_normalize(Double3 v)
     return length;
 }
 
-// The matrix, which acts on columns, of a unit quaternion x y z w.
+// The matrix (for column vectors) of a unit quaternion x y z w.
 static inline void double3_rotation(const double q[4], double rows[3][3])
 {
     const double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -78,7 +78,7 @@ static inline void double3_rotation(const double q[4], double rows[3][3])
     rows[2][2] = 1 - 2 * (x * x + y * y);
 }
 
-// Takes away what points along `normal`, which has unit length.
+// Removes the component along `normal`, a unit vector.
 static inline void double3_flatten(Double3 v, const Double3 normal)
 {
     double3_add_scaled(v, -double3_dot(v, normal), normal);

@@ -4,5 +4,5 @@
 
 #include <stddef.h>
 
-// Rising. NaN is not among them.
+// Sorts in ascending order. The values must not contain NaN.
 void doubles_sort(double *values, size_t count);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The wish that the program ends, as a flag that loops look at. interrupt_install.h has signals set
-// it.
+// A flag that asks the program to end, which loops test. interrupt_install.h lets signals set it.
 #pragma once
 
 #include <stdbool.h>
 
-// Whether it was asked for. False for ever if nothing asks. Any thread may call it.
+// Whether the program was asked to end. Always false if nothing sets the flag. Thread-safe.
 bool interrupt_requested(void);
 
-// For what asks: says which thread is to notice; asks (in a signal's handler, too); whether that
-// thread has noticed.
+// For the code that sets the flag: interrupt_expect says which thread should notice it,
+// interrupt_request sets it (also from a signal handler), interrupt_noticed tells whether that
+// thread has seen it.
 void interrupt_expect(void);
 void interrupt_request(void);
 bool interrupt_noticed(void);

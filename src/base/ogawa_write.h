@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Writes the parts of an Ogawa file, the form of Alembic's files that ogawa.h reads: data, groups
-// of parts, and properties with their samples. A part stands behind those that it names; only the
-// file's header names what comes, and is written once more at the end.
+// Writes the parts of an Ogawa file, the form of Alembic files that ogawa.h reads: data, groups of
+// parts, and properties with samples. A part is written after the parts that it refers to. Only the
+// file's header refers to later parts, so it is written once more at the end.
 #pragma once
 
 #include <stdbool.h>
@@ -12,12 +12,12 @@
 enum { OGAWA_HEADER_BYTES = 16, OGAWA_MOST_PARTS = 24 };
 
 typedef struct OgawaWriter {
-    FILE *stream; // whose errors the caller looks at
+    FILE *stream; // the caller checks its errors
     uint64_t at;  // bytes written
-    bool failed;  // memory was short: what was written is no file
+    bool failed;  // memory was short, so the file is invalid
 } OgawaWriter;
 
-// --- Bytes, little-endian, as they gather. A zeroed block is empty.
+// --- Growing blocks of little-endian bytes. A zeroed block is empty.
 
 typedef struct OgawaBlock {
     uint8_t *data; // owned; free it, or hand it to ogawa_put_data or ogawa_put_sample
@@ -31,16 +31,17 @@ void ogawa_add_float(OgawaBlock *block, float number);
 void ogawa_add_double(OgawaBlock *block, double number);
 void ogawa_add_text(OgawaBlock *block, const char *text); // without its end
 
-// --- Parts. Each returns its place, by which others name it; blocks are empty afterwards.
+// --- Parts. Each function returns the part's place, by which others refer to it, and empties the
+// block.
 
-// The file's first bytes. `closed`: the file is whole; `root`: its topmost group.
+// The first bytes of the file. `closed`: the file is complete; `root`: its top group.
 void ogawa_put_header(OgawaWriter *writer, bool closed, uint64_t root);
 uint64_t ogawa_put_data(OgawaWriter *writer, OgawaBlock *block);
-// Data with its key in front. `pod`: bytes of one of its numbers.
+// Data with its key in front. `pod`: bytes per number.
 uint64_t ogawa_put_sample(OgawaWriter *writer, OgawaBlock *block, uint32_t pod);
 uint64_t ogawa_put_group(OgawaWriter *writer, const uint64_t *part, size_t count);
 
-// The key by which readers know equal data: MurmurHash3 (Appleby), 128 bits for x64.
+// The key by which readers recognise equal data: MurmurHash3 (Appleby), 128 bits for x64.
 void ogawa_find_key(const uint8_t *data, size_t size, uint32_t seed, uint64_t key[2]);
 
 // --- Properties.
@@ -55,24 +56,24 @@ typedef enum OgawaPod {
     OGAWA_STRING = 12
 } OgawaPod;
 
-// A compound as it grows: its properties' groups, at most OGAWA_MOST_PARTS - 1, and their headers.
-// A zeroed one is empty.
+// A compound being built: the groups of its properties, at most OGAWA_MOST_PARTS - 1, and their
+// headers. A zeroed struct is empty.
 typedef struct OgawaCompound {
     uint64_t part[OGAWA_MOST_PARTS];
     size_t count;
     OgawaBlock headers;
 } OgawaCompound;
 
-// A property with samples at these places of data; several lie in the file's second sampling.
-// `extent`: numbers of an item. `array`: any number of items, else one.
+// Adds a property whose samples are at these places of data; several samples use the file's second
+// time sampling. `extent`: numbers per item. `array`: any number of items, otherwise one.
 void ogawa_add_samples(OgawaWriter *writer, OgawaCompound *to, const char *name, const char *meta,
                        bool array, OgawaPod pod, uint32_t extent, const uint64_t *sample,
                        size_t count);
-// With one sample.
+// The same with one sample.
 void ogawa_add_one(OgawaWriter *writer, OgawaCompound *to, const char *name, const char *meta,
                    bool array, OgawaPod pod, uint32_t extent, OgawaBlock *block);
-// A compound within a compound, unless it is empty.
+// Adds a compound to a compound, unless it is empty.
 void ogawa_add_compound(OgawaWriter *writer, OgawaCompound *to, const char *name, const char *meta,
                         OgawaCompound *inner);
-// 0: it is empty.
+// Returns 0 if it is empty.
 uint64_t ogawa_put_compound(OgawaWriter *writer, OgawaCompound *compound);

@@ -4,7 +4,7 @@
 
 #include "base/options.h"
 
-// Writes what `shell` (bash, zsh or fish) reads to complete the program's command line: options,
-// the words of their values, names of files for FILE and PATH and of folders for DIR, commands, and
-// the topics of --help. False, with nothing written, for any other word.
+// Writes the completion script for `shell` (bash, zsh or fish): options, words of their values,
+// file names for FILE and PATH and folders for DIR, commands, and the topics of --help. For any
+// other word writes nothing and returns false.
 bool options_complete(const OptionsProgram *program, const char *shell, FILE *stream);

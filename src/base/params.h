@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The parameters of a run: three structs, and a table by which they are read, written and
-// explained. Names, defaults, ranges and texts stand in params.def only.
+// The parameters of a run: three structs, and the table from which they are read, written and
+// explained. Names, defaults, ranges and texts are only in params.def.
 #pragma once
 
 #include "base/error.h"
@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// A number or a vector that the program may choose itself. `value` is zero while `automatic`.
+// A number or vector that the program may choose. `value` is zero while `automatic`.
 typedef struct AutoFloat {
     bool automatic;
     float value;
@@ -26,7 +26,7 @@ typedef struct AutoVec3 {
     float value[3];
 } AutoVec3;
 
-// What a value is, in C and as text. No number may be infinite or NaN.
+// The type of a value in C and its text form. Numbers must be finite.
 typedef enum ParamKind {
     PARAM_BOOL,       // bool: true, false
     PARAM_INT,        // int: decimal
@@ -49,7 +49,7 @@ typedef enum ParamKind {
     PARAM_PATH,       // char *, owned, never NULL: a path; empty for none
 } ParamKind;
 
-// The words of each CHOICE and the values they stand for, counted from 0.
+// The words of each CHOICE; their values count from 0.
 #define CHOICES_NONE(X)
 #define CHOICES_UP(X)    X(UP_AUTO, "auto") X(UP_Y, "y") X(UP_Z, "z")
 #define CHOICES_SCALP(X) X(SCALP_AUTO, "auto") X(SCALP_NONE, "none")
@@ -110,7 +110,7 @@ typedef enum Aov { CHOICES_AOV(CHOICE_VALUE) } Aov;
 typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
 #undef CHOICE_VALUE
 
-// The headings under which --help lists the parameters, in that order.
+// The headings of --help, in order.
 #define PARAM_GROUPS(X)                                                                            \
     X(INPUT, "Input")                                                                              \
     X(OUTPUT, "Output")                                                                            \
@@ -127,12 +127,12 @@ typedef enum Shading { CHOICES_SHADING(CHOICE_VALUE) } Shading;
 typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #undef GROUP_VALUE
 
-// The three structs: a field for every row of params.def.
+// The three structs have a field for every row of params.def.
 #define PARAM_FIELD_BOOL(field)  bool field;
 #define PARAM_FIELD_INT(field)   int field;
 #define PARAM_FIELD_UINT(field)  uint32_t field;
 #define PARAM_FIELD_FLOAT(field) float field;
-// A number and how it differs along the strand: a ProfileNumber in two fields.
+// A number and its profile along the strand: a ProfileNumber in two fields.
 #define PARAM_FIELD_PROFILE(field)                                                                 \
     float field;                                                                                   \
     Profile field##_along;
@@ -183,17 +183,17 @@ typedef enum ParamScope { SCOPE_RUN, SCOPE_BODY, SCOPE_SECTION } ParamScope;
 
 // A row of params.def.
 typedef struct ParamInfo {
-    const char *name; // of the field and of the scene file's key; the flag has '-' for '_'
+    const char *name; // of the field and the key of scene files; the flag has '-' instead of '_'
     ParamScope scope;
     ParamKind kind;
     ParamGroup group;
-    const char *owner; // names of the solvers that have it, a space between; "": all have
+    const char *owner; // solvers that have it, separated by spaces; "": all
     char letter;       // one-letter flag, or 0
-    size_t offset;     // of the field in the scope's struct, bytes
+    size_t offset;     // offset of the field in the struct of the row's scope, bytes
     const char *default_text;
     double minimum, maximum;    // of each number, inclusive
     const char *unit;           // "" for a plain number
-    const char *const *choices; // words, ended by NULL; empty unless the kind is CHOICE
+    const char *const *choices; // words, terminated by NULL; empty unless the kind is CHOICE
     const char *help;
 } ParamInfo;
 
@@ -201,39 +201,39 @@ extern const ParamInfo PARAM_TABLE[];
 extern const size_t PARAM_COUNT;
 extern const char *const GROUP_TITLES[GROUP_COUNT];
 
-// The defaults. RESULT_FAILED when memory is short; the struct may be destroyed in either case.
+// Sets the defaults. RESULT_FAILED when memory is short; the struct may be destroyed in either
+// case.
 Result params_create_run(RunParams *params, Error *error);
 Result params_create_body(BodyParams *params, Error *error);
 Result params_create_section(SectionParams *params, Error *error);
 
-// Free what the struct owns and zero it; a zeroed struct is fine.
+// Frees what the struct owns and zeroes it; accepts a zeroed struct.
 void params_destroy_run(RunParams *params);
 void params_destroy_body(BodyParams *params);
 void params_destroy_section(SectionParams *params);
 
-// A deep copy into `to`, which must not own anything. RESULT_FAILED when memory is short.
+// Makes a deep copy in `to`, which must not own anything. RESULT_FAILED when memory is short.
 Result params_copy_body(BodyParams *to, const BodyParams *from, Error *error);
 Result params_copy_section(SectionParams *to, const SectionParams *from, Error *error);
 
-// A name besides the row's own that flags and scene files may use, or NULL: --albedo is --color.
+// A second name that flags and scene files may use, or NULL: --albedo is --color.
 const char *params_also(const ParamInfo *info);
 
-// The row whose name, or whose other name, is `name`, read with '-' and '_' as the same; NULL if
-// there is none.
+// The row with this name or second name, with '-' and '_' equal; NULL if there is none.
 const ParamInfo *params_find(const char *name);
 
 // Whether the solver of this name (--algo) has the parameter.
 bool params_owned_by(const ParamInfo *info, const char *solver);
 
-// Reads `text` into the row's field of `params`, the struct of the row's scope. RESULT_USAGE if it
-// isn't a value of that kind or out of range: the field keeps its value and the error says what was
-// got and what was expected, but not the parameter's name, which the caller puts before it as its
-// user wrote it. RESULT_FAILED when memory is short.
+// Parses `text` into the row's field of `params`, the struct of the row's scope. RESULT_USAGE if it
+// is not a value of that kind or out of range: the field keeps its value, and the error says what
+// was given and what was expected. The caller adds the parameter's name as its user wrote it.
+// RESULT_FAILED when memory is short.
 Result params_parse(const ParamInfo *info, void *params, const char *text, Error *error);
 
-// The field's value as text that params_parse reads back to the same bits, in its shortest form.
-// The caller frees it; NULL when memory is short.
+// The field's value as the shortest text that params_parse reads back exactly. The caller frees it;
+// NULL when memory is short.
 char *params_format(const ParamInfo *info, const void *params);
 
-// What params_parse takes, in words: "a number from 1 to 10000 (1/s)". Cut at `size`.
+// Describes the accepted values: "a number from 1 to 10000 (1/s)". Cut at `size`.
 void params_describe(const ParamInfo *info, char *text, size_t size);

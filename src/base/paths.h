@@ -1,38 +1,37 @@
 // SPDX-License-Identifier: MIT
-// The files of a run: none that it writes may be one that it reads, or one that it writes under
-// another flag.
+// Checks the files of a run: no output may be an input, or the output of another flag.
 #pragma once
 
 #include "base/error.h"
 
 typedef enum PathRole {
-    PATH_READ,    // a file that is read, or a folder or pattern of them
+    PATH_READ,    // a file that is read, or a folder or pattern of files
     PATH_WRITTEN, // a file that is written
-    PATH_TARGET,  // a file that is written, or a folder or pattern of numbered ones (target.h)
-    PATH_KEPT,    // a file that is written as it is, and may be read before
+    PATH_TARGET,  // a file that is written, or a folder or pattern of numbered files (target.h)
+    PATH_KEPT,    // a file that is written in place and may be read before
     PATH_FOLDER,  // a folder of files that are written
     PATH_UPDATED, // a file, folder or pattern that is read and then written
 } PathRole;
 
 typedef struct PathUse {
-    const char *name; // for the message: "--cache", "the hair file"; outlives the claim
-    const char *path; // NULL or "": not used; "-": standard input or output, no file
+    const char *name; // for messages: "--cache", "the hair file"; must outlive the claim
+    const char *path; // NULL or "": not used; "-": standard input or output, not a file
     PathRole role;
-    const char *home; // the scene file that names this output, which must lie in that file's folder
-                      // then, and links are not followed; NULL: anywhere
+    // The scene file that names this output. The output must then be in the scene file's folder,
+    // and links are not followed. NULL: anywhere.
+    const char *home;
 } PathUse;
 
-// Compares what is written with everything else: by identity where the file exists, so that links,
-// spellings and a file system's case do not matter; else by folder and name, without regard to
-// case. A pattern has every file that differs from it in the number alone; files of that pattern
-// that are links count where they lead. Devices and pipes may be used twice. RESULT_USAGE naming
-// both uses; RESULT_BAD_INPUT naming an output that leaves its scene file's folder; RESULT_FAILED
-// naming an output whose file, or whose deepest folder that exists, cannot be written, or when
-// memory is short.
+// Compares outputs with all other uses: by identity if the file exists, so that links, spellings
+// and case-insensitive file systems do not matter; otherwise by folder and name, ignoring case. A
+// pattern covers all files that differ only in the number; existing links among them are followed.
+// Devices and pipes may be used twice. RESULT_USAGE with both uses; RESULT_BAD_INPUT with an output
+// that leaves its scene file's folder; RESULT_FAILED with an output whose file, or whose deepest
+// existing folder, cannot be written, or when memory is short.
 Result paths_check(const PathUse *uses, int count, Error *error);
 
-// The same, and claims all uses (claims.h): outputs' paths are resolved here, once for the whole
-// run. Single files are opened under a temporary name and missing folders are made, so that a
-// folder that cannot be written to is reported before any work starts. Call it once per program,
-// and outfile_end at the end. Fails like paths_check.
+// The same, and claims all uses (claims.h): resolves the outputs' paths once for the whole run.
+// Opens single files under a temporary name and makes missing folders, so that a folder that is not
+// writable is reported before any work starts. Call it once per program, and outfile_end at the
+// end. Errors of paths_check.
 Result paths_claim(const PathUse *uses, int count, Error *error);

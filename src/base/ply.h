@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// PLY's elements and numbers, text and binary of both byte orders. After Greg Turk's "The PLY
-// Polygon File Format" (1994). Who reads a kind of file names the properties that it wants; all
-// others are stepped over.
+// Elements and numbers of PLY files, text and binary in both byte orders. After Greg Turk's "The
+// PLY Polygon File Format" (1994). The reader of a kind of file names the properties that it wants;
+// all others are skipped.
 #pragma once
 
 #include "base/reader.h"
@@ -20,8 +20,8 @@ typedef enum PlyType {
     PLY_TYPES
 } PlyType;
 
-// What a type is: its size in bytes, and the largest of an unsigned one that may be a colour's; 0:
-// the colour would be linear.
+// A type: its size in bytes, and the largest value of an unsigned type that may hold a colour; 0:
+// such a colour is linear.
 typedef struct PlyTypeInfo {
     const char *name, *alias;
     uint32_t size;
@@ -33,22 +33,22 @@ extern const PlyTypeInfo PLY_TYPE_INFO[PLY_TYPES];
 typedef struct PlyProperty {
     PlyType type, count_type; // of a list's elements and of their number
     bool list;
-    int role; // which of the reader's names it has; -1: stepped over
+    int role; // index of its name in the reader's roles; -1 if skipped
 } PlyProperty;
 
 typedef struct PlyElement {
     char name[PLY_NAME_SIZE];
     uint32_t count, property_count;
-    PlyProperty *property; // of the file's
+    PlyProperty *property; // properties of the file
     bool has[PLY_MOST_ROLES];
 } PlyElement;
 
 typedef struct PlyFile {
     Reader *reader;
-    // What is wanted: names of properties, the last ones of which are lists and whole numbers.
+    // The wanted properties by name; integers and lists come last.
     const char *const *roles;
     int role_count, first_whole, first_list;
-    bool text, big; // big: most significant byte first
+    bool text, big; // big-endian
     PlyElement element[PLY_MOST_ELEMENTS];
     PlyProperty property[PLY_MOST_PROPERTIES];
     uint32_t element_count, property_count;
@@ -57,19 +57,19 @@ typedef struct PlyFile {
 // Whether the first line is that of a PLY file.
 bool ply_matches(const Bytes *bytes);
 
-// Reads the header; `reader` and roles are set. Then the reader stands at the first element, in
-// text with its line.
+// Reads the header; `reader` and the roles must be set. Then the reader is at the first element, in
+// text at its line.
 void ply_read_header(PlyFile *ply);
 
-// Fails unless the file can hold so many of the element.
+// Fails unless the file can hold as many of the element as it declares.
 bool ply_check_count(PlyFile *ply, const PlyElement *element);
 
-// One element of its kind: the numbers that have a role go to `values`, [role_count]. Lists are
-// stepped over, but that of a role: at most `most` whole numbers of it go to `list`, their number
-// to *list_count, which may be larger.
+// Reads one element: numbers with a role go to `values`, [role_count]. Lists are skipped, except
+// the list with a role: at most `most` of its integers go to `list`, and their total number to
+// *list_count.
 void ply_read_row(PlyFile *ply, const PlyElement *element, double *values);
 void ply_read_row_list(PlyFile *ply, const PlyElement *element, double *values, uint32_t *list,
                        uint32_t most, uint32_t *list_count);
 
-// Of the element's property of this role; PLY_FLOAT if it has none.
+// The type of the element's property with this role; PLY_FLOAT if it has none.
 PlyType ply_type_of(const PlyElement *element, int role);

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 
-// Flushes the standard output: if that fails, so does a run that has not failed with a message of
-// its own, unless the reader of a pipe has left. Prints "name: error" unless the text is empty, and
+// Ends a program. Flushes standard output; if that fails, so does a run without an error of its
+// own, unless the reader of a pipe has left. Prints "name: error" unless the text is empty, and
 // returns the exit status.
 int program_end(const char *name, Result result, Error *error);

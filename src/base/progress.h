@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The progress bar: one line on a terminal that is drawn over and over, nothing anywhere else.
+// The progress bar: one line on a terminal that is redrawn; nothing on other streams.
 #pragma once
 
 #include <stdbool.h>
@@ -7,32 +7,31 @@
 #include <stdio.h>
 
 typedef struct Progress {
-    FILE *stream;     // NULL: silent
+    FILE *stream;     // NULL if silent
     int total;        // frames to do
-    int done;         // frames done when `rate` was last brought up to date
-    double rate;      // frames a second, smoothed
-    double updated_s; // when `done` was counted
-    double drawn_s;   // when the line was last drawn
-    int shown;        // characters now on the line, 0: clear
+    int done;         // frames done at the last update of `rate`
+    double rate;      // frames per second, smoothed
+    double updated_s; // time of the last update of `rate`
+    double drawn_s;   // time of the last drawing
+    int shown;        // characters now on the line, 0 if it is clear
 } Progress;
 
-// Starts at 0 of `total` (> 0) frames. Silent for ever if `quiet` or if `stream` (stderr) is not a
-// terminal. Nothing is drawn yet and nothing needs to be freed. A zeroed Progress is silent.
+// Starts at 0 of `total` (> 0) frames. Stays silent if `quiet` or if `stream` (stderr) is not a
+// terminal. Draws nothing yet, and nothing needs to be freed. A zeroed Progress is silent.
 void progress_start(Progress *progress, FILE *stream, int total, bool quiet);
 
-// `done` frames are done. Draws at most ten times a second, and always the last frame.
+// Reports that `done` frames are done. Draws at most ten times a second, and always the last frame.
 void progress_update(Progress *progress, int done);
 
-// The same with the time given (seconds on any steady clock, also to be used for
-// progress_start_at).
+// The same with the time given, in seconds on any steady clock (also in progress_start_at).
 void progress_start_at(Progress *progress, FILE *stream, int total, bool quiet, double now_s);
 void progress_update_at(Progress *progress, int done, double now_s);
 
-// Erases the line so that a message can be printed in its place; the next update draws it again.
-// Also the way to end.
+// Erases the line, so that a message can be printed in its place; the next update draws it again.
+// Also ends the progress.
 void progress_clear(Progress *progress);
 
-// The line for `columns` (at least 40 are assumed) as text of at most columns - 1 characters:
-// count, bar, rate in frames a second, remaining time; rate and time only if `rate` > 0. Returns
-// its length. `size` is the buffer's.
+// The line for `columns` (at least 40 are assumed), of at most columns - 1 characters: count, bar,
+// frames per second, remaining time; the latter two only if `rate` > 0. Returns its length. `size`
+// is that of the buffer.
 int progress_format(char *line, size_t size, int columns, int done, int total, double rate);

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Sorts `count` pairs by their upper halves, least first; pairs that agree in them stay in order.
-// `other` has room for as many. Returns where the result is, `pairs` or `other`; the other one is
-// used up.
+// Sorts `count` pairs by their upper halves in ascending order; the sort is stable. `other` must
+// have the same size. Returns the array with the result, `pairs` or `other`; the other one is
+// overwritten.
 uint64_t *radix_sort(uint64_t *pairs, uint64_t *other, size_t count);

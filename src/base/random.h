@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Seeded pseudo-random numbers: SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom
-// number generators"). Integers, one division and square roots only, so every machine gets the same
-// numbers. Not for secrets.
+// number generators"). Uses only integers, one division and square roots, so every machine gets the
+// same numbers. Not for cryptography.
 #pragma once
 
 #include <stdint.h>
 
-// Copy it to fork the sequence; any state is valid.
+// A copy continues the same sequence independently; any state is valid.
 typedef struct Random {
     uint64_t state;
 } Random;
 
-// A sequence of its own for each pair: `stream` tells apart what is drawn with one seed.
+// An independent sequence for each pair; `stream` distinguishes uses of the same seed.
 Random random_create(uint64_t seed, uint64_t stream);
 
 // The next 64 bits.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads bytes or words from a file's content. Failure sticks: after the first one every function
-// returns 0 and changes nothing, so that a parser may check once, behind a row of reads. The
+// Reads bytes or words from the content of a file. Errors are sticky: after the first one, every
+// function returns 0 and changes nothing, so a parser can check once after a series of reads. The
 // message names the place: "FILE:LINE: ..." in text, "FILE: byte N: ..." in binary content.
 #pragma once
 
@@ -19,19 +19,19 @@ typedef struct Reader {
     size_t size;
     size_t at;         // next byte
     uint32_t line;     // text: of `at`, from 1; binary: 0
-    bool continuation; // text: a backslash at a line's end joins the next line (Wavefront OBJ)
+    bool continuation; // text: a backslash at the end of a line joins the next line (Wavefront OBJ)
     Result result;     // RESULT_OK until the first failure
     Error *error;
-    locale_t locale; // "C", made when first needed
+    locale_t locale; // "C" locale, created when first needed
 } Reader;
 
-// `bytes` and `path` must outlive the reader. reader_end frees what the reader holds.
+// `bytes` and `path` must outlive the reader. reader_end frees what the reader owns.
 Reader reader_begin_binary(const char *path, const Bytes *bytes, Error *error);
 Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error);
 void reader_end(Reader *reader);
 
-// Fails at the present place with RESULT_BAD_INPUT and a line (printf style, without the place);
-// keeps an older failure. Returns the reader's result.
+// Fails at the current place with RESULT_BAD_INPUT and a line (printf style, without the place);
+// keeps an earlier error. Returns the reader's result.
 Result reader_fail(Reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // Fails with RESULT_FAILED: no memory.
@@ -47,18 +47,18 @@ static inline size_t reader_left(const Reader *reader)
     return reader->size - reader->at;
 }
 
-// --- Binary, little-endian. `what` names the value in the message.
+// --- Binary, little-endian. `what` names the value in messages.
 uint32_t reader_read_u32(Reader *reader, const char *what);
 uint16_t reader_read_u16(Reader *reader, const char *what);
 float reader_read_f32(Reader *reader, const char *what);
 
-// Fails unless `count` things of `stride` bytes lie within the file from byte `start` on; nothing
-// overflows for any value. The failure's place is the present one (the field that asks for the
-// array). Returns whether they do.
+// Fails unless `count` elements of `stride` bytes from byte `start` on are within the file; safe
+// against overflow. The error's place is the current one (the field that refers to the array).
+// Returns whether they are.
 bool reader_check_array(Reader *reader, uint64_t start, uint64_t count, uint64_t stride,
                         const char *what);
 
-// Copies `count` floats from byte `start`, which must have been checked.
+// Copies `count` floats from byte `start`, which the caller has checked.
 void reader_copy_floats(const Reader *reader, uint64_t start, float *floats, size_t count);
 
 // --- Text. Blanks are space, tab and carriage return; a word is anything between blanks.
@@ -70,16 +70,16 @@ bool reader_take(Reader *reader,
                  const char *word); // steps over the next word of this line if it is `word`
 void reader_expect(Reader *reader, const char *word); // ... and fails if it is not
 
-// Copies the next word of this line and steps over it; false, and nothing happens, if there is none
-// or it does not fit into `size` bytes with its zero.
+// Copies the next word of this line and steps over it. False, without any change, if there is none
+// or if it does not fit into `size` bytes with its zero.
 bool reader_read_word(Reader *reader, char *word, size_t size);
 
-// A whole number 0 .. 2^32 - 1 on this line.
+// An integer from 0 to 2^32 - 1 on this line.
 uint32_t reader_read_count(Reader *reader, const char *what);
 
-// A decimal number on this line, rounded correctly to float32 whatever the locale. Infinities and
-// NaNs are values too, also as old Windows libraries print them (-1.#INF, 1.#QNAN, -1.#IND).
+// A decimal number on this line, correctly rounded to float32 in any locale. Infinities and NaNs
+// are accepted, also as printed by old Windows libraries (-1.#INF, 1.#QNAN, -1.#IND).
 float reader_read_number(Reader *reader, const char *what);
 
-// Fails with "expected WHAT, got 'the next word'", the end of the line or the end of the file.
+// Fails with "expected WHAT, got 'the next word'", or got the end of the line or file.
 Result reader_fail_expected(Reader *reader, const char *what);

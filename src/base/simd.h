@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Loops over lanes that compilers turn into vector instructions: arithmetic for them, and the same
-// loops built once for each kind of vectors. Such loops are innermost and have no branches.
-// -ffp-contract=off and no function of libm keep the bits the same whatever the vectors are.
+// Loops over lanes that compilers vectorise: arithmetic for them, and the same loops compiled once
+// for each vector extension. Such loops are innermost and have no branches. -ffp-contract=off and
+// not using libm keep results the same for all vector extensions.
 #pragma once
 
 #include "base/parallel.h"
@@ -10,10 +10,10 @@
 #include <stdint.h>
 #include <string.h>
 
-// The vectors that a processor has.
+// The vector extensions of a processor.
 typedef enum SimdLevel {
-    SIMD_ANY,    // what every processor of its family has
-    SIMD_AVX2,   // 8 floats, fused multiplication and addition
+    SIMD_ANY,    // available on every processor of the family
+    SIMD_AVX2,   // 8 floats, fused multiply-add
     SIMD_AVX512, // the same with twice as many registers
     SIMD_LEVELS
 } SimdLevel;
@@ -21,7 +21,7 @@ typedef enum SimdLevel {
 // The best level of this processor.
 SimdLevel simd_level(void);
 
-// Attributes of a function for each level; elsewhere than on x86 they say nothing.
+// Function attributes for each level; empty except on x86.
 #define SIMD_FOR_ANY
 #if defined __x86_64__
 #define SIMD_FOR_AVX2   __attribute__((target("avx2,fma")))
@@ -33,8 +33,8 @@ SimdLevel simd_level(void);
 
 #define SIMD_INLINE static inline __attribute__((always_inline))
 
-// run_NAME(data, parts): NAME(const TYPE *data, int part), a SIMD_INLINE function, for each part
-// on threads (see parallel.h), by the best vectors that the processor has.
+// Defines run_NAME(data, parts), which calls the SIMD_INLINE function NAME(const TYPE *data, int
+// part) for each part on threads (parallel.h), compiled for the best level of the processor.
 #define SIMD_STAGE(name, type)                                                                     \
     SIMD_FOR_ANY static void name##_any(void *data, int part)                                      \
     {                                                                                              \
@@ -55,7 +55,7 @@ SimdLevel simd_level(void);
         parallel_run(parts, versions[simd_level()], data);                                         \
     }
 
-// call_NAME(data): NAME(const TYPE *data, 0) on this thread, by the best vectors.
+// Defines call_NAME(data), which calls NAME(const TYPE *data, 0) on this thread at the best level.
 #define SIMD_CALL(name, type)                                                                      \
     SIMD_FOR_ANY static void name##_any(const type *data)                                          \
     {                                                                                              \
@@ -83,7 +83,7 @@ SIMD_INLINE float simd_float_of(uint32_t bits)
     return value;
 }
 
-// One instruction each; an a that is not a number becomes the bound.
+// One instruction each; for NaN they return the bound.
 SIMD_INLINE float simd_max(float a, float least)
 {
     return a > least ? a : least;
@@ -93,14 +93,14 @@ SIMD_INLINE float simd_min(float a, float most)
     return a < most ? a : most;
 }
 
-// The larger of x and 0, without a comparison: compilers turn one whose outcome decides the next
-// into a jump, and do not vectorise its loop.
+// The larger of x and 0, without a comparison: compilers turn comparisons whose outcome decides the
+// next one into jumps, which prevents vectorisation.
 SIMD_INLINE float simd_positive(float x)
 {
     return 0.5f * (x + fabsf(x));
 }
 
-// The least whole number that isn't less, of those that an int holds.
+// The smallest integer that is not less, within the range of int.
 SIMD_INLINE float simd_ceil(float x)
 {
     float whole = (float)(int)x;

@@ -4,18 +4,18 @@
 
 #include "base/usd_text.h"
 
-// Without `timed` there is at most one, the default.
+// Without `timed` there is at most one sample, the default.
 typedef struct UsdSamples {
-    UsdValues *sample;     // [count] by rising time
-    size_t count, in_file; // in_file: of which some may not be kept
+    UsdValues *sample;     // [count] by ascending time
+    size_t count, in_file; // in_file: number in the file, of which some may be dropped
     bool timed;
 } UsdSamples;
 
-// Reads a default, or with `timed` the braces of timeSamples, which win over the default whatever
-// comes first; without `all` the first of these is kept. Fails the reader where times do not rise.
+// Reads a default value or, with `timed`, the braces of timeSamples, which override the default in
+// any order; without `all` only the first sample is kept. Fails the reader if times do not ascend.
 void usd_samples_read(UsdSamples *samples, Reader *reader, bool timed, bool all);
 void usd_samples_destroy(UsdSamples *samples);
 
-// The two samples around a time, and how far behind the first one it is, 0 to 1. There is one at
-// least.
+// The two samples around a time, and the place between them, 0 to 1. There must be at least one
+// sample.
 double usd_samples_find(const UsdSamples *samples, double time, const float **a, const float **b);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Reads a `.usda` layer: its unit, axis and rate, and all prims in the order of the file, with
-// their transforms and what hides them (inactive, invisible, abstract: class, over; of purpose
-// guide or proxy). Attributes are read by a schema: that of curves, that of meshes. What would
-// bring in other files or choose among versions (sublayers, references, variants, ...) is refused,
-// since passing over it would give another scene.
+// Reads a `.usda` layer: its unit, axis and rate, and all prims in the order of the file with their
+// transforms and visibility (hidden: inactive, invisible, abstract (class, over), of purpose guide
+// or proxy). A schema for curves or meshes reads the attributes. Files that are composed of others,
+// or offer versions (sublayers, references, variants, ...), are refused, because ignoring that
+// would give another scene.
 #pragma once
 
 #include "base/usd_samples.h"
 #include "base/usd_times.h"
 #include "base/usd_transform.h"
 
-// How a file of several layers becomes one, for messages.
+// For messages: how to flatten a file of several layers.
 extern const char USD_FLATTEN[];
 
 typedef struct UsdPrim {
@@ -19,17 +19,19 @@ typedef struct UsdPrim {
     bool hidden, abstract, instancer;
 } UsdPrim;
 
-// `to` is the schema's own, and an object what it makes of a prim.
+// `to` is the schema's data; an object is what the schema makes of a prim.
 typedef struct UsdSchema {
-    // An object for a prim of this type; NULL: it is none of the schema's, or memory is short.
+    // Creates an object for a prim of this type; NULL if the schema does not handle it, or if
+    // memory is short.
     void *(*begin)(void *to, const char *type, int prim);
-    // Reads the value of an attribute and returns true; false, with nothing read, for others.
-    // `name`, of `length` characters without ".timeSamples". *rate: where its interpolation goes.
+    // Reads the value of an attribute and returns true; for others reads nothing and returns false.
+    // `name` has `length` characters without ".timeSamples". *rate: where its interpolation is
+    // stored.
     bool (*read)(void *to, void *object, const char *name, size_t length, bool samples,
                  char (**rate)[16]);
-    // Where a number of the prim's metadata goes; NULL: nowhere.
+    // Where to store a number of the prim's metadata; NULL: nowhere.
     float *(*find_number)(void *object, const char *word);
-    // Takes the object, whose prim is whole.
+    // Takes the object of a prim that is complete.
     void (*end)(void *to, void *object);
 } UsdSchema;
 
@@ -41,28 +43,28 @@ typedef struct UsdStage {
     int prim_count;
     float unit; // m
     bool up_z;
-    double codes_per_second, frames_per_second; // 0: the file does not say
+    double codes_per_second, frames_per_second; // 0 if the file does not say
 } UsdStage;
 
 bool usd_stage_matches(const Bytes *bytes);
 
-// Fails the reader. The stage is to be destroyed in any case.
+// Fails the reader. Destroy the stage in any case.
 Result usd_stage_read(UsdStage *stage, Reader *reader, const UsdSchema *schema, void *to);
 void usd_stage_destroy(UsdStage *stage);
 
-// Time codes a second.
+// Time codes per second.
 double usd_stage_rate(const UsdStage *stage);
 
-// Whether the prim or one above it is hidden, or a PointInstancer's.
+// Whether the prim or a parent is hidden, or belongs to a PointInstancer.
 bool usd_stage_hides(const UsdStage *stage, int prim);
 bool usd_stage_instances(const UsdStage *stage, int prim);
 
-// Transforms that have no effect, for want of an order.
+// The number of transforms without effect, because xformOpOrder is missing.
 uint32_t usd_stage_count_idle(const UsdStage *stage);
 
-// A prim's matrix at a time code, with those above it: p' = p M. Fails the reader.
+// A prim's matrix at a time code, including its parents: p' = p M. Fails the reader.
 void usd_stage_find_matrix(const UsdStage *stage, int prim, double time, double matrix[4][4]);
 
-// The times of the samples and of the transforms that move them.
+// Adds the times of the samples and of the transforms that move them.
 void usd_stage_add_times(const UsdStage *stage, int prim, const UsdSamples *samples,
                          UsdTimes *times);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The text of `.usda` files: words, strings, numbers, arrays. The reader's data ends with a zero;
-// what is wrong fails the reader, which then is at its end.
+// The text of `.usda` files: words, strings, numbers, arrays. The reader's data must end with a
+// zero. Errors fail the reader, which is then at its end.
 #pragma once
 
 #include "base/reader.h"
@@ -10,48 +10,49 @@
 
 enum { USD_WORD_SIZE = 128 };
 
-// The character that comes, 0 at the end; and past it.
+// usd_text_here: the current character, 0 at the end. usd_text_step: moves past it.
 char usd_text_here(const Reader *reader);
 void usd_text_step(Reader *reader);
 
-// The next character that is neither blank nor comment, 0 at the end; with `line` not beyond it.
+// The next character that is neither blank nor comment, 0 at the end; with `line` only on this
+// line.
 char usd_text_peek(Reader *reader, bool line);
 
-// Past `wanted` if it is what comes next; expect: fails if it is not.
+// Moves past `wanted` if it is next; usd_text_expect fails if it is not.
 bool usd_text_take(Reader *reader, char wanted);
 void usd_text_expect(Reader *reader, char wanted);
 
-// Whether names and numbers may have it.
+// Whether the character may be part of names and numbers.
 bool usd_text_is_letter(char c);
 
-// A name or a number, or a type, which may have brackets; cut if it is too long to be one that is
-// known.
+// Reads a name, a number, or a type, which may have brackets. Cut if it is too long for a known
+// word.
 void usd_text_read_word(Reader *reader, char word[USD_WORD_SIZE]);
 void usd_text_read_type(Reader *reader, char word[USD_WORD_SIZE]);
 
-// A string in its quotes, 'x', "x" or with three of either; the first characters to `text`.
+// Reads a quoted string, 'x', "x" or with three quotes; stores its first characters in `text`.
 void usd_text_read_string(Reader *reader, char text[USD_WORD_SIZE]);
 
-// Whatever value comes: brackets with all that is in them, a string, a path, an asset, a word.
+// Skips any value: brackets with their content, a string, a path, an asset, a word.
 void usd_text_skip_value(Reader *reader);
 
-// One number; beyond what float32 holds it is infinite.
+// A number; infinite if it is beyond float32.
 float usd_text_read_float(Reader *reader);
 
-// All numbers between brackets, however they are grouped. `value` is the caller's to free.
+// All numbers between brackets, regardless of nested brackets. The caller frees `value`.
 typedef struct UsdValues {
     float *value;
     size_t count, room;
-    uint32_t line; // 0: there are none
+    uint32_t line; // 0 if there are none
     double time;   // of a sample
 } UsdValues;
 
-// An array, or the word None.
+// Reads an array, or the word None.
 void usd_text_read_values(Reader *reader, UsdValues *values);
 
-// Within { time: value, ... }: steps to the next value and gives its time; false, past the brace,
+// Within { time: value, ... }: moves to the next value and returns its time; false, past the brace,
 // if there is none.
 bool usd_text_next_sample(Reader *reader, double *time);
 
-// One number, or a tuple of at most `most`, however grouped; those that are not there stay.
+// Reads a number, or at most `most` numbers of a tuple; missing ones stay unchanged.
 void usd_text_read_numbers(Reader *reader, double *numbers, int most);

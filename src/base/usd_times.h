@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// The times at which the prims of a USD layer are looked at.
+// The times at which prims of a USD layer are evaluated.
 #pragma once
 
 #include "base/reader.h"
 
-// In time codes. Zeroed, there are none.
+// In time codes. A zeroed struct is empty.
 typedef struct UsdTimes {
     double *time; // [count]
     uint32_t count, room;
     int first;   // number of the first frame
-    double step; // time codes from frame to frame
-    bool evened; // times were uneven, and are whole time codes now
+    double step; // time codes per frame
+    bool evened; // uneven times were replaced by whole time codes
 } UsdTimes;
 
 void usd_times_add(UsdTimes *times, Reader *reader, double time);
 
-// Makes them rise, each there once.
+// Sorts the times and removes duplicates.
 void usd_times_sort(UsdTimes *times);
 
-// Of at least two that rise. Times that are not evenly spaced become all whole time codes between
-// the first and the last.
+// For at least two ascending times. Unevenly spaced times are replaced by all whole time codes from
+// the first to the last.
 void usd_times_even_out(UsdTimes *times, Reader *reader);
 void usd_times_destroy(UsdTimes *times);

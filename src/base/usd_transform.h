@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Transforms of USD prims (UsdGeomXformable): the operations that xformOpOrder names, with values
-// that may change with time. Matrices act on rows, p' = p M, as in USD.
+// Transforms of USD prims (UsdGeomXformable): the operations listed in xformOpOrder, whose values
+// may be animated. Matrices are for row vectors, p' = p M, as in USD.
 #pragma once
 
 #include "base/usd_text.h"
 
-// The numbers of an operation, at one time or at several. Between two times they are interpolated
-// linearly (orientations spherically), before and behind them they stay, as USD has it.
+// The values of an operation over time. They are interpolated linearly (orientations spherically)
+// and constant before the first and after the last time, as in USD.
 typedef struct UsdTrack {
-    double *time;        // [count]; a value without a time has count 1 and `timed` false
+    double *time;        // [count]; a value without time has count 1 and `timed` false
     double (*value)[16]; // [count]
     size_t count, room;
     bool timed;
@@ -25,7 +25,7 @@ typedef struct UsdTransform {
     size_t op_count;
     char (*order)[USD_WORD_SIZE]; // may begin with "!invert!"; "!resetXformStack!"
     size_t order_count;
-    uint32_t line; // of the order; 0: there is none, and operations have no effect
+    uint32_t line; // line of the order; 0 if there is none, and operations have no effect
 } UsdTransform;
 
 // Reads the value of "xformOp:..." (with ".timeSamples" if `timed`), or of xformOpOrder.
@@ -33,9 +33,8 @@ void usd_transform_read_op(UsdTransform *transform, Reader *reader, const char *
 void usd_transform_read_order(UsdTransform *transform, Reader *reader);
 void usd_transform_destroy(UsdTransform *transform);
 
-// Makes the matrix at a time; `reset`: those of the parents do not count. Fails the reader at
-// operations that it does not know or that are not there, and where an inverse is asked for and
-// there is none.
+// Computes the matrix at a time; `reset`: parent transforms do not apply. Fails the reader for
+// unknown or missing operations, and if a requested inverse does not exist.
 void usd_transform_evaluate(const UsdTransform *transform, Reader *reader, double time,
                             double matrix[4][4], bool *reset);
 
