@@ -115,7 +115,7 @@ Result chunk_find(ChunkFile *file, uint64_t at, Chunk *chunk, Error *error)
         return fail_to_read(file, at, "the file ends", error);
     if (le32toh(header.header_checksum) !=
         libdeflate_crc32(0, &header, offsetof(Header, header_checksum)))
-        return fail_at(file, at, "damaged, no chunk begins here", error);
+        return fail_at(file, at, "damaged: expected the header of a chunk", error);
     *chunk = (Chunk){.number = le32toh(header.number),
                      .at = at,
                      .size = le64toh(header.size),

@@ -179,7 +179,7 @@ static void take_property(Cursor *cursor, OgawaProperty *property)
         if (property->last && (property->first == 0 || property->last < property->first ||
                                property->last >= property->samples))
             reader_fail(cursor->reader,
-                        "samples %u to %u of %u differ: expected some that are there",
+                        "samples %u to %u change, of %u: expected a range of existing samples",
                         property->first, property->last, property->samples);
     }
     uint32_t length = take(cursor, width);
@@ -372,7 +372,7 @@ static void read_samplings(Ogawa *file, uint64_t place)
         at += 16;
         if (count > (end - at) / 8) {
             reader->at = (size_t)at;
-            reader_fail(reader, "%u times of samples: expected what is there", count);
+            reader_fail(reader, "%u sample times: more than the file holds", count);
             break;
         }
         sampling->time = malloc(count * sizeof *sampling->time + 1);

@@ -155,8 +155,8 @@ static Result check_size(Zip *zip, const ZipFile *file)
         return reader_fail(zip->reader, "'%s' has two sizes", file->name);
     if (file->method == DEFLATED && file->size > zip->budget)
         return reader_fail(zip->reader,
-                           "'%s' unpacks to %llu bytes, with which it is beyond %d times the "
-                           "archive's size and %d MiB: expected a stored file",
+                           "'%s' unpacks to %llu bytes: expected at most %d times the archive's "
+                           "size and %d MiB in all, or a stored file",
                            file->name, (unsigned long long)file->size, ZIP_MOST_TIMES,
                            ZIP_MOST_TIMES);
     return RESULT_OK;
@@ -179,7 +179,7 @@ Result zip_read(Zip *zip, const ZipFile *file, Bytes *content, uint8_t **owned)
         (*owned)[file->size] = 0;
     }
     if (libdeflate_crc32(0, content->data, content->size) == file->crc) return RESULT_OK;
-    return reader_fail(zip->reader, "'%s' is damaged: its checksum is another one", file->name);
+    return reader_fail(zip->reader, "'%s' is damaged: its checksum does not match", file->name);
 }
 
 // --- Writing.

@@ -64,7 +64,7 @@ Result late_read_open(LateRead *read, const char *what, const void **bytes, Erro
         *bytes = glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)read->room, GL_MAP_READ_BIT);
     if (*bytes) return RESULT_OK;
     TRY(gpu_check(what, error));
-    return error_set(error, RESULT_FAILED, "%s: the driver does not hand it over", what);
+    return error_set(error, RESULT_FAILED, "%s: the driver cannot map the buffer", what);
 }
 
 void late_read_close(LateRead *read)

@@ -48,7 +48,7 @@ static Result check_loops(const Collision *collision, bool software, Error *erro
         uint64_t most = MOST_ITERATIONS_ON_CPU / n / (ROUNDS + 3);
         if (collision->colliders->count + (collision->field != NULL) > most)
             return error_set(error, RESULT_USAGE,
-                             "collider: %u of them for strands of %u vertices: expected at most "
+                             "colliders: %u for strands of %u vertices: expected at most "
                              "%llu (more exceed the loops of a CPU driver)",
                              collision->colliders->count, collision->hair->batches[i].vertex_count,
                              (unsigned long long)most);

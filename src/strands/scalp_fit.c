@@ -190,8 +190,9 @@ static const char *judge_form(const double radius[3], double error)
 {
     double least = fmin(radius[0], fmin(radius[1], radius[2])),
            most = fmax(radius[0], fmax(radius[1], radius[2]));
-    if (most > MOST_RATIO * least) return "it would be too long";
-    return error > MOST_ERROR * mean_radius(radius) ? "the roots lie off" : NULL;
+    if (most > MOST_RATIO * least) return "the ellipsoid is too long";
+    return error > MOST_ERROR * mean_radius(radius) ? "the roots are too far from the ellipsoid"
+                                                    : NULL;
 }
 
 static bool is_size_of_head(const double radius[3])
@@ -210,7 +211,8 @@ static const char *judge_vertices(const Strands *strands, uint32_t sets, const S
             inside += share_out(p, fit->centre, fit->radius) < DEEP;
             ++all;
         }
-    return (double)inside > MOST_INSIDE * (double)all ? "hair crosses it" : NULL;
+    return (double)inside > MOST_INSIDE * (double)all ? "too much hair is inside the ellipsoid"
+                                                      : NULL;
 }
 
 static void destroy(Roots *roots)
@@ -226,9 +228,9 @@ static const char *fit_roots(ScalpFit *fit, Roots *roots)
     double centre[3], radius[3];
     if (roots->count < FEWEST_ROOTS) return "there are too few roots";
     normalise(roots);
-    if (!(roots->scale > 0)) return "the roots are one";
+    if (!(roots->scale > 0)) return "all roots coincide";
     for (int pass = 0; pass < PASSES; ++pass) {
-        if (!fit_once(roots, centre, radius)) return "the roots lie on no ellipsoid";
+        if (!fit_once(roots, centre, radius)) return "no ellipsoid fits the roots";
         measure(roots, centre, radius, true);
     }
     measure(roots, centre, radius, false);

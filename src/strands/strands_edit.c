@@ -257,8 +257,8 @@ Result strands_group_sets(Strands *all, const Strands *sets, uint32_t count, boo
         }
         if (first + most > STRANDS_MOST_GROUP)
             return error_set(error, RESULT_FAILED,
-                             "a group of strands is %.0f: expected at most %d", first + most,
-                             STRANDS_MOST_GROUP);
+                             "a group of strands has the number %.0f: expected at most %d",
+                             first + most, STRANDS_MOST_GROUP);
         first += most + 1;
     }
     return RESULT_OK;

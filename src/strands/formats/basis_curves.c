@@ -114,7 +114,7 @@ static void stand_at(Reader *reader, uint32_t line)
 static void fail_count(Reader *reader, const BasisCurves *curves, int array)
 {
     stand_at(reader, curves->array[array].line);
-    reader_fail(reader, "%s: %zu numbers for these curves", curves->names[array],
+    reader_fail(reader, "%s: %zu numbers do not fit these curves", curves->names[array],
                 curves->array[array].count);
 }
 
@@ -320,7 +320,8 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
     uint64_t points = curves->points.sample[0].count / 3, used = 0, vertices = 0;
     stand_at(reader, curves->points.sample[0].line);
     if (curves->points.sample[0].count % 3)
-        reader_fail(reader, "points: %zu numbers for these curves", curves->points.sample[0].count);
+        reader_fail(reader, "points: %zu numbers do not fit these curves",
+                    curves->points.sample[0].count);
     for (size_t s = 0; s < counts->count && reader_ok(reader); ++s) {
         float size = counts->value[s];
         if (!(size >= 0 && size <= (float)points && size == floorf(size))) {
@@ -337,7 +338,7 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
     for (size_t i = 0; i < curves->points.count && reader_ok(reader); ++i) {
         stand_at(reader, curves->points.sample[i].line);
         if (curves->points.sample[i].count != 3 * used)
-            reader_fail(reader, "points: %zu numbers for these curves",
+            reader_fail(reader, "points: %zu numbers do not fit these curves",
                         curves->points.sample[i].count);
     }
     if (reader_ok(reader) && vertices >= UINT32_MAX)

@@ -125,8 +125,8 @@ static void read_sizes(FormatSource *source, Reader *reader, const Header *heade
     }
     if (reader_ok(reader) && first != header->points) {
         reader->at = 8;
-        reader_fail(reader, "%u points, the segments make %llu", header->points,
-                    (unsigned long long)first);
+        reader_fail(reader, "the header says %u points, the segments add up to %llu",
+                    header->points, (unsigned long long)first);
     }
 }
 

@@ -356,7 +356,7 @@ static void read_frames(Npz *npz)
         bool good = array->kind == 'f' && array->axes >= 3 && count > 0 && count < 10000000 &&
                     array->count == count * each && array->shape[array->axes - 1] == 3;
         if (!good)
-            reader_fail(npz->reader, "'frames' are not the %u points of each frame",
+            reader_fail(npz->reader, "'frames' does not have %u points in each frame",
                         source->strands.vertex_count);
         source->samples = good ? (uint32_t)count : 0;
         if (good && source->wishes.all_frames) {
