@@ -70,7 +70,7 @@ static void a_program_that_does_not_notice_a_signal_ends_and_leaves_nothing(void
 }
 
 // Files of living processes, files of other machines, locked files, and files of any other name.
-static void what_is_not_known_to_be_abandoned_stays(void **state)
+static void files_that_may_be_in_use_are_kept(void **state)
 {
     char dead[LEFTOVER_NAME_SIZE], name[4][LEFTOVER_NAME_SIZE];
     pid_t child = fork();
@@ -106,7 +106,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(the_next_run_removes_what_a_killed_one_left),
         TEST(a_program_that_does_not_notice_a_signal_ends_and_leaves_nothing),
-        TEST(what_is_not_known_to_be_abandoned_stays),
+        TEST(files_that_may_be_in_use_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -265,7 +265,7 @@ static void a_read_only_file_is_not_replaced(void **state)
 
 // Some file systems report lost bytes only when the file is closed. Here the descriptor is invalid
 // at closing.
-static void what_only_closing_says_is_reported(void **state)
+static void errors_at_closing_are_reported(void **state)
 {
     OutFile file;
     Error error;
@@ -313,7 +313,7 @@ int main(void)
         TEST(places_where_no_file_can_be_are_named),
         TEST(missing_folders_are_made),
         TEST(a_read_only_file_is_not_replaced),
-        TEST(what_only_closing_says_is_reported),
+        TEST(errors_at_closing_are_reported),
         TEST(two_writers_of_one_name_do_not_mix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

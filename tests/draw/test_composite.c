@@ -208,7 +208,7 @@ static void ribbons_are_laid_under_each_other(void **state)
 }
 
 // At most 1/1024 of the light may be missing.
-static void what_is_left_out_hardly_shows(void **state)
+static void skipped_ribbons_change_a_pixel_by_at_most_a_1024th(void **state)
 {
     (void)state;
     make_ribbons(2, MOST, 5, 0.9);
@@ -366,7 +366,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ribbons_are_laid_under_each_other),
-        cmocka_unit_test(what_is_left_out_hardly_shows),
+        cmocka_unit_test(skipped_ribbons_change_a_pixel_by_at_most_a_1024th),
         cmocka_unit_test(ribbons_that_are_hardly_seen_look_like_the_others),
         cmocka_unit_test(light_of_what_is_hardly_seen_is_made_up_for),
         cmocka_unit_test(what_lies_behind_the_mesh_is_hidden),

@@ -430,7 +430,7 @@ static void visit_all_cells(LightGridState *state)
 
 // Equal up to the rounding caused by the small number that keeps light from becoming denormal
 // (1e-30 per cell).
-static void sweeps_leave_out_what_nobody_sees(void **unused)
+static void sweeps_of_needed_cells_equal_sweeps_of_all_cells(void **unused)
 {
     (void)unused;
     Clumps clumps;
@@ -669,7 +669,7 @@ int main(void)
         cmocka_unit_test(a_mesh_stands_in_the_light),
         cmocka_unit_test(some_strands_stand_for_all),
         cmocka_unit_test(light_is_what_maps_leave),
-        cmocka_unit_test(sweeps_leave_out_what_nobody_sees),
+        cmocka_unit_test(sweeps_of_needed_cells_equal_sweeps_of_all_cells),
         cmocka_unit_test(walls_are_those_of_the_mesh_and_open_around),
         cmocka_unit_test(a_path_is_the_way_from_each_cell),
         cmocka_unit_test(long_segments_are_as_many_short_ones),

@@ -294,7 +294,7 @@ static double sky_on_square(const Mesh *mesh, float grey, float open)
 // A surface of colour c that sees the share o of the sky, and in other directions surfaces like
 // itself, has the light o / (1 - c (1 - o)): white surfaces are fully lit, however little of the
 // sky they see. The mesh's pixels are half floats.
-static void what_hides_the_sky_sends_on_its_light(void **state)
+static void surfaces_that_hide_the_sky_reflect_its_light(void **state)
 {
     (void)state;
     static const float greys[] = {0.2f, 0.5f, 0.8f, 1}, opens[] = {0.9f, 0.4f, 0.1f};
@@ -384,7 +384,7 @@ int main(void)
         CLAIM(a_strand_throws_its_shadow_on_the_mesh),
         CLAIM(an_edge_of_the_mesh_shows_by_its_samples),
         CLAIM(skin_has_a_soft_edge_and_a_highlight),
-        CLAIM(what_hides_the_sky_sends_on_its_light),
+        CLAIM(surfaces_that_hide_the_sky_reflect_its_light),
         CLAIM(a_mesh_is_drawn_again_where_it_looks_different),
     };
     return stage_run(tests);

@@ -67,7 +67,7 @@ static uint32_t count_programs(void)
 }
 
 // Also if a device has drawn many scenes of different kinds.
-static void few_programs_are_kept_for_nobody(void **state)
+static void the_number_of_kept_unused_programs_is_limited(void **state)
 {
     (void)state;
     GLuint used = build(1), gone = build(2);
@@ -103,7 +103,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_files_and_macros_are_one_program),
-        cmocka_unit_test(few_programs_are_kept_for_nobody),
+        cmocka_unit_test(the_number_of_kept_unused_programs_is_limited),
         cmocka_unit_test(what_fails_is_not_kept),
     };
     return cmocka_run_group_tests_name("shader", tests, open_gpu, close_gpu);

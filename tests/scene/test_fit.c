@@ -146,7 +146,7 @@ static float distance_of(const Shot *shot)
 // only the sides limit the distance, which is the case in a narrow frame seen from the height of
 // the target. The target is accurate to 1e-5 of the search's range, 4 m here, and the distance
 // changes by at most 40 times as much (scale / slope).
-static void of_whole_turns_the_target_is_the_best_one(void **state)
+static void on_whole_turns_no_other_target_brings_the_camera_closer(void **state)
 {
     (void)state;
     static const float steps[] = {0.02f, 0.005f, 0.0015f};
@@ -194,7 +194,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_touch_the_margin_and_never_cross_it),
         cmocka_unit_test(the_points_radius_and_a_zoom_are_counted_in),
-        cmocka_unit_test(of_whole_turns_the_target_is_the_best_one),
+        cmocka_unit_test(on_whole_turns_no_other_target_brings_the_camera_closer),
         cmocka_unit_test(without_points_nothing_changes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
