@@ -19,7 +19,7 @@ def array_of(name: str, value: Any) -> np.ndarray:
 
 
 def numbers(name: str, value: Any, shape: tuple[int | None, ...], dtype: Any = np.float32) -> np.ndarray:
-    """`value` as an array of `shape` (None: any length) and `dtype`."""
+    """Converts `value` to an array of `dtype`. It must already have `shape`, where None stands for any length."""
     try:
         array = np.asarray(value)
         if array.dtype.kind not in ("iu" if np.dtype(dtype).kind in "iu" else "iuf"):
@@ -46,8 +46,9 @@ def pointer(array: np.ndarray | None, kind: Any) -> Any:
 
 
 def strands(value: Any) -> tuple[np.ndarray, np.ndarray]:
-    """The positions (V, 3) of all strands, concatenated, and the number of vertices of each strand; from (S, V, 3), a
-    list of (V, 3) or (points, sizes). Positions that simulate() yields, with a fourth number, are accepted, too."""
+    """Converts strands to two arrays: the positions (V, 3) of all strands, concatenated, and the number of vertices of
+    each strand. `value` is (S, V, 3), a list of (V, 3), or (points, sizes). Positions may have a fourth number, as
+    those that simulate() yields; it is ignored."""
     if isinstance(value, tuple) and len(value) == 2 and array_of("strands[1]", value[1]).ndim == 1:
         points, sizes = points_of("strands[0]", value[0]), numbers("strands[1]", value[1], (None,), np.uint32)
         if sizes.sum(dtype=np.uint64) != len(points):
@@ -69,7 +70,7 @@ def points_of(name: str, value: Any) -> np.ndarray:
     return numbers(name, array[:, :3] if array.ndim == 2 and array.shape[1] == 4 else array, (None, 3))
 
 
-# Metres in a unit, by the names of --unit.
+# The length of each unit of --unit, in metres.
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
 

@@ -27,9 +27,10 @@ def device() -> Handle:
 
 
 def select_device(name: str | None = None, *, software: bool = False, require_hardware: bool = False) -> None:
-    """Chooses the device that draws. Call it before the first call that needs a device; without it the best device is
-    used. `name`: as in tractrix-render --device (number, part of the name, PCI address, node); `software`: only CPU
-    drivers; `require_hardware`: no CPU drivers. Raises TractrixError(2) if another device is already open."""
+    """Chooses the device for simulating and rendering. Call it before the first simulation or image; otherwise the best
+    device is used. `name`: a device number, a part of its name, its PCI address, node or UUID, as for tractrix-render
+    --device; `software`: use only CPU drivers; `require_hardware`: never use a CPU driver. Raises TractrixError with
+    code 2 if a device with other options is already open."""
     global _options
     with lock:
         if _device is not None and _options != (name, software, require_hardware):
@@ -38,8 +39,9 @@ def select_device(name: str | None = None, *, software: bool = False, require_ha
 
 
 def describe_device() -> dict[str, str]:
-    """Properties of the device: `renderer`, `version`, `vendor`, `processor`, `path` (EGL or OSMesa), `pci`, `uuid`,
-    `node`, and `passed-over` (why no GPU is used). Unknown properties are missing. Opens the device."""
+    """The known properties of the device: `renderer`, `version`, `vendor`, `processor`, `path` (how the OpenGL context
+    was made), `pci`, `uuid`, `node`, and `passed-over` (why no GPU is used although there are signs of one). Opens the
+    device if it is not open yet."""
     with lock:
         texts = {what: library().tractrix_device_text(device().value, what.encode()).decode() for what in _TEXTS}
     return {what: text for what, text in texts.items() if text}

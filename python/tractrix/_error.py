@@ -7,8 +7,8 @@ FAILED, USAGE, BAD_INPUT, NO_GL = 1, 2, 3, 4
 
 
 class TractrixError(Exception):
-    """A call failed. `code` is as the programs' exit status (1 failure at run time, 2 wrong usage, 3 bad input,
-    4 no usable OpenGL); `text` is one line, "place: what is wrong: what was expected"."""
+    """A call failed. `code` has the meaning of the programs' exit statuses: 1 failure at run time, 2 wrong usage, 3 bad
+    input, 4 no usable OpenGL. `text` is one line: "place: what is wrong: what was expected"."""
 
     def __init__(self, code: int, text: str) -> None:
         super().__init__(code, text)

@@ -60,6 +60,8 @@ def read_image(path: str | os.PathLike[str]) -> np.ndarray:
 
 
 def write_image(path: str | os.PathLike[str], image: ImageLike) -> None:
-    """Writes uint8 and uint16 to .png, floats to .exr or .pfm. Opaque images are written without alpha, as tractrix-render does."""
+    """Writes an image file. The suffix of `path` decides the file format: .png for uint8 and uint16, .jpg for opaque
+    uint8, .exr or .pfm for floats. If all pixels are opaque, the file has no alpha channel; a .pfm file never has
+    one."""
     array = rgba("image", image)
     call("tractrix_image_write", ctypes.byref(image_of(array)), os.fsencode(path))

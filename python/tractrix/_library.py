@@ -69,5 +69,6 @@ def version() -> str:
 
 
 def set_threads(count: int) -> None:
-    """Sets the number of threads that a call may use, 1 to 16. 0, the default: one for each processor that the process may use."""
+    """Sets the number of threads that a call may use, 1 to 16. 0, the default: one for each processor that the process
+    may use."""
     library().tractrix_set_threads(count)

@@ -29,7 +29,8 @@ def is_path(value: Any) -> bool:
 
 
 def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, parameters: Mapping[str, Any]) -> Handle:
-    """A new scene. `parameters` may have unit and up and, for arrays of strands, thickness, color and uv."""
+    """Creates a scene. If `strands` are arrays, `parameters` must contain `unit`, and may contain `up` and arrays for
+    `thickness`, `color` and `uv`."""
     given = {name: value for name, value in parameters.items() if value is not None}
     if is_path(strands):
         scene = Handle("tractrix_scene_read", "tractrix_scene_destroy", os.fsencode(strands))
@@ -83,6 +84,6 @@ def _set_mesh(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], pa
 
 
 def _is_array(value: Any) -> bool:
-    """Whether `value` has colors by vertex, not a value of the parameter color ("auburn", (1, 0, 0)). Two vertices already
-    have 6 numbers."""
+    """Whether `value` has a color for each vertex and is not a value of the parameter `color` ("auburn", (1, 0, 0)). A
+    strand has at least 2 vertices, so colors of vertices are at least 6 numbers."""
     return not is_path(value) and _arrays.array_of("color", value).size > 4

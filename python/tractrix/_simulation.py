@@ -37,14 +37,16 @@ def part_of(name: str) -> int:
 
 
 class Simulation:
-    """Hair that starts at time 0; each `advance` simulates one frame. `strands` are arrays, (S, V, 3), a list of (V, 3)
-    or (points, sizes), for which `unit` is required, or the path of a hair or scene file. `mesh` is
-    (vertices, triangles) or a path; with `deforms` each `advance` takes its vertices. All other keywords are the
-    parameters of tractrix-render (docs/options.md), with `_` for `-`. If strands are arrays, `thickness` (relative to
-    its mean, which `radius` sets), `color` (linear RGB, opacity) and `uv` (of roots) may be arrays, too. Raises
-    TractrixError.
+    """A simulation of hair. It starts at time 0; each `advance` simulates one frame.
 
-    Closed by close(), by `with`, or with its last reference."""
+    `strands` is the path of a hair file or scene file, or arrays of root-first vertices: (S, V, 3), a list of (V, 3),
+    or (points, sizes). Arrays need `unit`. `mesh` is (vertices, triangles) or a path. With `deforms` you pass the
+    vertices of the mesh to each `advance`. All other keywords are the parameters of tractrix-render (docs/options.md),
+    with `_` for `-`. If `strands` are arrays, these parameters may be arrays: `thickness` (of each vertex, in any unit;
+    a vertex with the mean thickness has the radius `radius`), `color` (of each vertex: linear RGB, or linear RGB and
+    opacity) and `uv` (of each root). Raises TractrixError.
+
+    Use `with` or close() to free the simulation; otherwise it is freed when its last reference is gone."""
 
     def __init__(self, strands: StrandsLike, *, mesh: MeshLike | None = None, deforms: bool = False,
                  **parameters: Unpack[Parameters]) -> None:
@@ -95,9 +97,11 @@ class Simulation:
                 call("tractrix_simulation_set", self._pointer, name.encode(), text_of(name, value).encode())
 
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
-        """Simulates one frame, 1 / fps seconds. `head`: the head's pose at the end of the frame, a rigid (4, 4) matrix or
-        ((x, y, z, w), (x, y, z)); without it the head moves as the scene says, or stays. `mesh`: the vertices (N, 3) of a
-        deforming mesh at the end of the frame, in the world, m, y up."""
+        """Simulates one frame, which is speed / fps seconds of the scene (parameters `fps` and `speed`; `speed` is 1 by
+        default). `head`: the pose of the head at the end of the frame, a rigid (4, 4) matrix or a quaternion and a
+        translation in m, ((x, y, z, w), (x, y, z)). Without `head` the head moves as the scene says, or stays where it
+        is if an earlier call has given a pose. `mesh`: the vertices (N, 3) of a deforming mesh at the end of the frame,
+        in world space, m, y up. `head` and `mesh` need frames that are a whole number of simulation steps."""
         if head is not None and mesh is not None:
             raise usage("advance: both head and mesh: expected one of them")
         with lock:
@@ -108,9 +112,10 @@ class Simulation:
                 call("tractrix_simulation_advance", self._pointer, None if head is None else ctypes.byref(pose_of(head)))
 
     def positions(self, section: int = 0, *, part: Part = "guides", copy: bool = True) -> PositionsLike:
-        """The vertices of guides or followers as they are drawn now, read-only: (S, V, 4), x y z 1 in the world, m, root
-        first; a list of (V, 4) if strands have different numbers of vertices. With copy=False the array is a view of the
-        library's memory, whose content changes with the next call of this object. The memory lives as long as the view."""
+        """The vertices of guides or followers as they are drawn now, read-only: (S, V, 4), x y z 1 in the world, m,
+        root first; a list of (V, 4) if strands have different numbers of vertices. With copy=False the array is a view
+        of the library's memory: the next call of this object may change its content. The memory lives as long as the
+        view."""
         view = Positions()
         with lock:
             call("tractrix_simulation_map", self._pointer, section, part_of(part), ctypes.byref(view))
@@ -129,9 +134,10 @@ class Simulation:
 
     def render(self, size: tuple[int, int] = (960, 960), *, dtype: Any = np.uint8,
                view: tuple[np.ndarray, np.ndarray] | None = None) -> np.ndarray:
-        """An image of the current state: (H, W, 4), top row first. uint8 and uint16 are sRGB with straight alpha; float32
-        is linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for column
-        vectors; default: the scene's camera. Automatic exposure is determined at the first image of each size."""
+        """An image of the current state: (H, W, 4), top row first. uint8 and uint16 are sRGB with straight alpha;
+        float32 is linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for
+        column vectors; default: the scene's camera. Automatic exposure is measured at the first image, and again
+        whenever `size` or `dtype` differs from that of the previous image; with float32 it is 0."""
         try:
             kind = np.dtype(dtype)
         except TypeError:
@@ -161,8 +167,8 @@ def _view_of(view: tuple[np.ndarray, np.ndarray]) -> View:
 def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[int, int] = (960, 960),
            dtype: Any = np.uint8, view: tuple[np.ndarray, np.ndarray] | None = None,
            frames: int = 0, **parameters: Unpack[Parameters]) -> np.ndarray:
-    """One image, (H, W, 4), of the hair at rest, or after a simulation of `frames` frames. For several images of the
-    same hair make a Simulation, which takes the same other arguments."""
+    """Renders one image, (H, W, 4), of the hair at time 0, or after `frames` simulated frames. The other arguments are
+    those of Simulation and Simulation.render. For several images of the same hair create a Simulation."""
     with Simulation(strands, mesh=mesh, **parameters) as simulation:
         for _ in range(frames):
             simulation.advance()
@@ -172,8 +178,10 @@ def render(strands: StrandsLike, *, mesh: MeshLike | None = None, size: tuple[in
 def simulate(strands: StrandsLike, *, frames: int | None = None, head: Iterable[PoseLike] | None = None,
              mesh: MeshLike | None = None, mesh_frames: Iterable[np.ndarray] | None = None, section: int = 0,
              part: Part = "guides", copy: bool = True, **parameters: Unpack[Parameters]) -> Iterator[PositionsLike]:
-    """Yields the positions at the end of each frame. `head` has a pose for each frame, `mesh_frames` the vertices of a
-    deforming mesh; without `frames` their length is the number of frames. Other arguments as in Simulation."""
+    """Yields the positions of the hair at the end of each frame, as Simulation.positions does. `head`: a pose of the
+    head for each frame. `mesh_frames`: the vertices of a deforming mesh for each frame. Pass at most one of them.
+    `frames`: how many frames; may be missing if `head` or `mesh_frames` is given, whose length is then used. The other
+    arguments are those of Simulation."""
     if head is not None and mesh_frames is not None:
         raise usage("simulate: both head and mesh_frames: expected one of them")
     if frames is None and head is None and mesh_frames is None:

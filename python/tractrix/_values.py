@@ -13,9 +13,10 @@ from ._library import library
 
 
 class Parameter(NamedTuple):
-    """A row of the library's table. `kind`: type of the value ("float", "vec3", "choice" ...); `minimum` and `maximum`:
-    limits of each number (both 0: no limits); `owner`: solvers that have it (empty: all); `of_section`: it may differ
-    between sections; `live`: it may be changed while a simulation runs."""
+    """A parameter of the library. `kind`: type of the value ("float", "vec3", "choice" ...); `default`: the default
+    value as text; `choices`: the allowed words (empty: not limited to words); `owner`: names of the solvers that use
+    the parameter (empty: all); `minimum` and `maximum`: limits of each number (both 0: no limits); `of_section`: each
+    section of hair may have its own value; `live`: Simulation.set may change the value."""
 
     name: str
     kind: str
@@ -45,7 +46,7 @@ def parameters() -> Mapping[str, Parameter]:
                                         row.maximum, row.of_section, row.live)
 
 
-# The separator between the numbers of a kind; all other kinds have commas.
+# The separator between the numbers of a value, by the kind of the parameter; for all other kinds it is a comma.
 _SEPARATORS = {"size": "x", "part": "/", "profile": ":"}
 
 
@@ -55,8 +56,8 @@ def plain(value: Any) -> Any:
 
 
 def text_of(name: str, value: Any) -> str:
-    """`value` as the text of a flag: texts and paths unchanged, True as true, numbers with all digits, sequences with the
-    separator of the parameter's kind."""
+    """Converts `value` to the text that tractrix-render's option takes: text and paths stay unchanged, True becomes
+    "true", numbers keep all digits, and sequences are joined with the separator of the parameter's kind."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     value = plain(value)

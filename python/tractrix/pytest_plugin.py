@@ -15,8 +15,8 @@ import pytest
 if TYPE_CHECKING:
     from ._image import ImageLike
 
-# The results folder may contain other files. In it, PAIRS is a folder of the plugin with the pairs that differ, named
-# as tractrix-compare pairs them, and the page that shows them.
+# The plugin writes into its own folder PAIRS inside the results folder, which may contain other files. PAIRS has the
+# images that differ from their golden images, both under the same name, and the page REPORT that shows them.
 PAIRS, GOLDENS, IMAGES, REPORT = "tractrix-pairs", "goldens", "images", "report.html"
 # The test that each image of this session belongs to, by the image's name among the pairs.
 OWNERS: pytest.StashKey[dict[str, str]] = pytest.StashKey()
@@ -63,9 +63,9 @@ class ImageCheck:
     def check(self, image: ImageLike, *, name: str | None = None, mask: ImageLike | None = None,
               pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
               max_flip: float | None = None) -> None:
-        """Fails unless `image` matches its golden within the limits of tractrix.compare; without limits it must be equal.
-        The golden is goldens/MODULE/TEST.png beside the test file, TEST-NAME.png with a `name`, .exr for floats. A missing
-        golden is a failure; only --tractrix-update writes goldens."""
+        """Fails unless `image` matches its golden within the limits of tractrix.compare; without limits it must be
+        equal. The golden is goldens/MODULE/TEST.png beside the test file, TEST-NAME.png with a `name`, .exr for floats.
+        A missing golden is a failure; only --tractrix-update writes goldens."""
         __tracebackhide__ = True
         from . import compare
         from ._image import read_image, rgba
@@ -93,7 +93,8 @@ class ImageCheck:
                                     f"{result.at[0]},{result.at[1]}, FLIP {result.flip:.4f}")
 
     def _flat(self, golden: pathlib.Path) -> str:
-        """A golden's name among the pairs of all folders: FOLDER.MODULE.TEST.png, where FOLDER is the test file's folder."""
+        """The name of a golden image in PAIRS, unique over all test files: FOLDER.MODULE.TEST.png, where FOLDER is the
+        test file's folder."""
         return f"{file_name(self._module, None)}.{golden.name}"
 
     def _fail(self, golden: pathlib.Path, new: Any, what: str) -> None:
@@ -157,7 +158,7 @@ def compare_program() -> str:
 
 
 def write_report(results: pathlib.Path) -> None:
-    """Writes the page. All its images have failed their tests, so it has no limits: any difference counts."""
+    """Writes the page. It needs no limits: all images in PAIRS have already failed their tests."""
     done = subprocess.run([compare_program(), "-q", str(results / GOLDENS), str(results / IMAGES), "--html", str(results / REPORT)],
                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode > 1:  # 1: images differ

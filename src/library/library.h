@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The room library: Tractrix for other programs. It takes calls of tractrix.h and hands on what the
-// other rooms make of them, as values: no output, no exit, nothing of the host's changed.
+// The room library: the functions of tractrix.h, for other programs. They call the other rooms and
+// return results and errors as values. The library prints nothing, never ends the process, and
+// leaves the host's OpenGL context as tractrix.h says.
 //
-// This file: what the handles are. Each is counted: a child keeps its parent.
+// This file: the structs behind the handles, and functions that the files of this room share.
+// Devices and simulations count their users: a child keeps its parent alive.
 #pragma once
 
 #include "library/tractrix.h"
@@ -20,29 +22,34 @@
 
 // --- Errors and structs of callers.
 
-// What a function returns: the result, its line in `to`.
+// Converts a result to the TractrixResult that a public function returns. If it is an error, copies
+// its text to `to`; `to` may be NULL.
 TractrixResult library_end(Result result, const Error *error, TractrixError *to);
 
-// TRACTRIX_USAGE in the words of printf.
+// Returns TRACTRIX_USAGE and writes a text, printf style, to `to`; `to` may be NULL.
 TractrixResult library_refuse(TractrixError *to, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-// A caller's struct as this version has it: `from` has as many bytes as its first member says, and
-// what it lacks is 0. RESULT_USAGE with `name` if it is NULL, or its size is less than `least` or
-// more than `size`.
+// Copies a caller's struct to `to`, which has the `size` bytes of this version. The first member of
+// `from` says how many bytes `from` has; members that it lacks become 0. RESULT_USAGE, naming
+// `name`, if `from` is NULL or has fewer than `least` or more than `size` bytes.
 Result library_take(void *to, size_t size, const void *from, size_t least, const char *name,
                     Error *error);
-// The struct given back to a caller who knows as much of it as `size` says.
+// Copies a struct back to the caller's struct `to`, whose first member says how many bytes it has.
+// Only the members that fit are copied; that first member is kept.
 void library_give(void *to, const void *from);
 
 // --- Images.
 
-// A caller's image, checked; row_bytes is not 0 then. RESULT_USAGE with `name`.
+// Copies and checks a caller's image. Afterwards to->row_bytes is never 0. RESULT_USAGE, naming
+// `name`, if a member is wrong.
 Result library_take_image(TractrixImage *to, const TractrixImage *image, const char *name,
                           Error *error);
-// The pixels of an image of the same size and kind, opaque where it has no alpha.
+// Copies the pixels of `image` to the caller's image, which must have the same size and kind. If
+// `image` has no alpha, the pixels become opaque.
 void library_put_image(const TractrixImage *to, const Image *image);
-// The pixels as an image, without alpha if all are opaque. RESULT_FAILED when memory is short.
+// Makes an image with the caller's pixels, without an alpha channel if all pixels are opaque.
+// RESULT_FAILED when memory is short.
 Result library_copy_image(Image *to, const TractrixImage *from, Error *error);
 
 // --- Devices.
@@ -53,70 +60,74 @@ struct TractrixDevice {
     Gpu gpu;
     bool borrowed;
     atomic_int users; // the handle and its children
-    pid_t process;    // that opened it
-    // Of an own device: its thread, and what it is to do.
+    pid_t process;    // the process that opened the device
+    // Only if the device is not borrowed: its thread, and the work that the thread is to do.
     pthread_t thread;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
-    LibraryWork *work; // NULL: nothing
+    LibraryWork *work; // NULL: none
     void *data;
     Error *error;
     Result result;
     bool done, ends;
 };
 
-// Calls `work` where the device's context is current, and waits for it. RESULT_NO_GL if there is
-// none, or after fork().
+// Calls `work` on the thread on which the device's context is current, and waits until it returns.
+// RESULT_NO_GL if a borrowed device's context is gone, or in a child process after fork().
 Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, Error *error);
 void library_keep_device(TractrixDevice *device);
 void library_drop_device(TractrixDevice *device);
 
 // --- Parameters.
 
-// The row of a parameter that callers may set; NULL: there is none.
+// Finds a parameter that callers may set. NULL if there is none of this name.
 const ParamInfo *library_parameter(const char *name);
+// Whether tractrix_simulation_set may change the parameter.
 bool library_is_live(const ParamInfo *info);
 
 // --- Scenes.
 
-// Hair or a mesh that a caller has handed over.
+// Hair that a caller has passed as an array.
 typedef struct LibraryArray {
     char *name;
     Strands strands;
 } LibraryArray;
 
-// What has been done to a scene, in order, so that it can be made again.
+// A change that the caller has made to a scene. A scene keeps its changes in order, so that
+// library_copy_scene can make the scene again.
 typedef struct LibraryStep {
-    const ParamInfo *info; // scene_set; NULL: a section is added, of ...
-    int section;
-    char *text;
-    uint32_t array; // ... arrays[array]
+    const ParamInfo *info; // the parameter that is set; NULL: a section is added
+    int section;           // if a parameter is set: as for tractrix_scene_set
+    char *text;            // if a parameter is set: its value
+    uint32_t array;        // if a section is added: its hair is arrays[array]
 } LibraryStep;
 
 struct TractrixScene {
-    Scene scene; // as it is now
+    Scene scene; // the scene after all changes
     char *path, *json, *folder, *look;
     LibraryArray *arrays;
     uint32_t array_count;
     LibraryStep *steps;
     uint32_t step_count;
-    GivenMesh mesh; // empty: none
+    GivenMesh mesh; // the mesh from arrays; without vertices: there is none
 };
 
-// The scene once more, all of it the caller's but for what is handed over, which stays the scene's.
-// May be destroyed in either case.
+// Makes a copy of the scene, which the caller must destroy, also after an error. The copy's hair
+// and mesh from arrays are not copied: `from` still owns them and must outlive the copy's use of
+// them.
 Result library_copy_scene(Scene *scene, const TractrixScene *from, Error *error);
 
 // --- Simulations.
 
-// Positions that are mapped: of a section's guides or followers.
+// The positions of a section's guides or followers, for the caller. In `size` and `position`
+// strands have the order of TractrixPositions; in `first` they have the order of the batches of
+// Hair.
 typedef struct LibraryMap {
     uint32_t strand_count, vertex_count;
-    uint32_t *size;       // [strand_count], vertices, in the order that callers know
-    uint32_t *first;      // [strand_count]: where the strands of the batches, one behind the other,
-                          // begin in ...
-    float (*position)[4]; // ... [vertex_count]
-    Gather gather;        // to the caller's buffers
+    uint32_t *size;       // [strand_count]: vertices of each strand
+    uint32_t *first;      // [strand_count]: index in `position` of each strand's first vertex
+    float (*position)[4]; // [vertex_count]
+    Gather gather;        // copies positions to the caller's OpenGL buffers
 } LibraryMap;
 
 struct TractrixSimulation {
@@ -128,12 +139,13 @@ struct TractrixSimulation {
     Simulation simulation;
     char *messages;
     size_t messages_size;
-    LibraryMap *maps;  // [2 * sections]
-    DrivenHead driven; // by callers
-    uint64_t aims;     // changes of the camera's parameters
+    LibraryMap *maps;  // [2 * sections]: guides and followers of each section
+    DrivenHead driven; // the head, if the caller moves it
+    uint64_t aims;     // how often a camera parameter was changed
 };
 
-// Frees what maps hold: where the context is current what is the GPU's, then the rest.
+// Free the simulation's maps: library_end_copies frees the GPU's objects and needs the device's
+// context; library_unmap, called after it, frees memory.
 void library_end_copies(TractrixSimulation *simulation);
 void library_unmap(TractrixSimulation *simulation);
 

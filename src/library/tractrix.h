@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Tractrix as a library: simulates and draws hair with OpenGL 4.3, and compares images.
+// The library of Tractrix. It simulates and renders hair with OpenGL 4.3, and compares images.
 //
-// Units: metres, seconds, y up, right-handed, unless a member says otherwise. Text is UTF-8.
-// Failure: a function that returns TractrixResult writes one line, without a line end, to *error
-//   (NULL: none) and leaves outputs alone, but for handles, which become NULL.
-// Ownership: what is passed in is copied. A handle is the caller's, for ..._destroy, which takes
-//   NULL. A device or simulation that is destroyed lives on until its last child is destroyed.
-// Threads: all handles of one device are used by one thread at a time; several devices, scenes and
-//   pictures may be used at once.
-// Manners: no output, no signal handler, no exit, no file but those that an argument or a parameter
-//   names, no change of the caller's current OpenGL or EGL context. After fork() the child may only
-//   destroy, which frees nothing there: all else of a device fails with TRACTRIX_NO_GL.
-// Structs whose first member is `size`: the caller sets it to their sizeof, since newer versions
-//   append members. TractrixError and TractrixPose have none and stay as they are.
-// Bytes: the same calls on the same driver and processor family give the same positions and pixels,
-//   those of tractrix-render.
+// Units: metres and seconds, unless a comment says otherwise. Coordinates are right-handed, y is
+//   up. Text is UTF-8.
+// Errors: if a function that returns a TractrixResult fails, it writes one line of text, without a
+//   line end, into *error; `error` may be NULL. A function that fails changes none of its outputs,
+//   with two exceptions: it sets the handle that it should have created to NULL, and
+//   tractrix_compare may have written a part of `map`.
+// Ownership: the library copies the arrays and texts that it gets. A handle belongs to the caller,
+//   who frees it with the ..._destroy function of its type; these functions accept NULL. You may
+//   destroy handles in any order: a device or a simulation is freed after everything that was
+//   created from it has been destroyed.
+// Threads: only one thread at a time may use a device and the handles that were created from it.
+//   Different devices, scenes and pictures may be used by different threads at the same time.
+// Side effects: the library prints nothing, installs no signal handlers and never ends the program.
+//   It opens only files that an argument or a parameter names. It does not change which OpenGL or
+//   EGL context is current.
+// fork(): a child process may only destroy the devices, simulations and renderers of its parent.
+//   This frees nothing. All calls that need such a device fail with TRACTRIX_NO_GL. The child may
+//   open a device of its own.
+// Structs whose first member is `size`: set `size` to sizeof the struct before each call, also if
+//   the library fills in the struct. Newer versions may append members to these structs.
+//   TractrixError and TractrixPose have no `size` and never change.
+// Reproducibility: with the same OpenGL driver and processor family, the same calls give the same
+//   positions and pixels, bit for bit. tractrix-render gives the same positions and pixels, too.
 #ifndef TRACTRIX_H
 #define TRACTRIX_H
 
@@ -27,13 +36,13 @@ extern "C" {
 #endif
 #pragma GCC visibility push(default)
 
-#define TRACTRIX_VERSION_NUMBER 0x000200 // major, minor, patch: a byte each
-typedef enum TractrixResult {            // the programs' exit statuses
+#define TRACTRIX_VERSION_NUMBER 0x000200 // 0xMMmmpp: major, minor, patch
+typedef enum TractrixResult {            // equal to the exit statuses of the programs
     TRACTRIX_OK = 0,
-    TRACTRIX_FAILED = 1,    // at run time: memory, disk, driver
-    TRACTRIX_USAGE = 2,     // an argument or a parameter is wrong
-    TRACTRIX_BAD_INPUT = 3, // content of a file, of JSON or of an array is wrong
-    TRACTRIX_NO_GL = 4      // no usable OpenGL
+    TRACTRIX_FAILED = 1,    // a failure at run time: out of memory, disk full, driver error
+    TRACTRIX_USAGE = 2,     // an argument or the value of a parameter is wrong
+    TRACTRIX_BAD_INPUT = 3, // the content of a file, of JSON text or of an array is wrong
+    TRACTRIX_NO_GL = 4      // there is no usable OpenGL
 } TractrixResult;
 typedef struct TractrixError {
     char text[1024]; // "place: what is wrong: what was expected"
@@ -44,162 +53,220 @@ typedef struct TractrixSimulation TractrixSimulation;
 typedef struct TractrixRenderer TractrixRenderer;
 typedef struct TractrixPicture TractrixPicture;
 
-uint32_t tractrix_version_number(void); // of the library that was loaded
-const char *tractrix_version(void);     // as --version: "0.2.0", or with the commit behind it
-// Threads that a call may use, 1 to 16; 0: one a processor that the process may use, the default.
+// The version of the loaded library: as a number like TRACTRIX_VERSION_NUMBER, and as the text that
+// the programs' --version prints ("0.2.0"; builds between two versions also name the commit).
+uint32_t tractrix_version_number(void);
+const char *tractrix_version(void);
+// Sets how many threads a call may use, 1 to 16; other values are clamped to 0 to 16. 0, the
+// default: one thread for each processor that the process may use, at most 16. Applies to the whole
+// process.
 void tractrix_set_threads(int count);
 
 // --- Devices.
 
 typedef struct TractrixDeviceOptions {
     size_t size;
-    const char *name; // as --device: number, part of the name, PCI address, node; NULL: the best
-    bool software;    // only a CPU driver
-    bool require_hardware; // no CPU driver
+    const char *name; // device number, part of the renderer's or vendor's name, PCI address, device
+                      // node or UUID, as for tractrix-render --device; NULL: the best device
+    bool software;    // use only a CPU driver (software rendering)
+    bool require_hardware; // use only a GPU, never a CPU driver; excludes `software`
 } TractrixDeviceOptions;
 
-// A device with an EGL context of its own, on a thread of its own: calls come from any thread and
-// wait for that one. `options` NULL: the best device. TRACTRIX_NO_GL with all that was tried.
+// Opens a device with its own EGL context on its own thread. Calls may come from any thread, one at
+// a time; each call waits until the device's thread has done its work. `options` NULL: the best
+// device. TRACTRIX_NO_GL if no device can be used; the error text lists what was tried.
 TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDeviceOptions *options,
                                     TractrixError *error);
 
-// The caller's OpenGL context, 4.3 or newer, EGL or GLX, current on this thread now and in every
-// call of this device and its children, destroy too. Calls expect OpenGL's default state and leave
-// defaults, but for viewport, scissor box, and bindings of programs, vertex arrays,
-// framebuffers, buffers, textures, samplers, images and uniform blocks: set yours again.
-// TRACTRIX_NO_GL if no context is current or it offers too little.
+// Makes a device from your own OpenGL context: version 4.3 or newer, by EGL or GLX. The context
+// must be current on the calling thread, now and in every later call that uses this device or
+// anything created from it, including the destroy functions. OpenGL must be in its default state at
+// each call. After the call it is in its default state again, except for the following, which you
+// must set again: viewport, scissor box, and the bindings of programs, vertex arrays, framebuffers,
+// buffers, textures, samplers, images and uniform blocks. TRACTRIX_NO_GL if no context is current
+// or it lacks a required feature.
 TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error);
 void tractrix_device_destroy(TractrixDevice *device);
 
-// "renderer", "version", "vendor", "processor", "path" (the way in), "pci", "uuid", "node",
-// "passed-over" (why no GPU is used); "" if not known. Valid while the device lives.
+// Returns a property of the device. `what`: "renderer", "version", "vendor" (OpenGL's strings),
+// "processor" (name of the CPU), "path" (how the context was made, for example "EGL device 0" or
+// "borrowed"), "pci" (PCI address), "uuid", "node" (device node), or "passed-over" (why no GPU is
+// used although there are signs of one). Returns "" if the property is unknown. The text is valid
+// until the device is destroyed.
 const char *tractrix_device_text(const TractrixDevice *device, const char *what);
 
-// --- Parameters: those of tractrix-render's flags and scene files, by name ('-' reads as '_').
+// --- Parameters: the same as the options of tractrix-render and the keys of scene files
+// (docs/options.md). In names, '-' and '_' mean the same.
 
 typedef struct TractrixParameter {
     const char *name, *kind, *unit, *help, *default_text; // kind: "float", "vec3", "choice", ...
-    const char *choices;     // words with a blank between them; "": not of words
-    const char *owner;       // names of the solvers that have it; "": all
-    double minimum, maximum; // of each number; both 0: none
-    bool of_section;         // may differ by section
-    bool live;               // tractrix_simulation_set takes it
+    const char *choices;     // the allowed words, separated by spaces; "": not limited to words
+    const char *owner;       // names of the solvers that use it, separated by spaces; "": all
+    double minimum, maximum; // limits of each number of the value; both 0: no limits
+    bool of_section;         // each section of hair may have its own value
+    bool live;               // can be changed during a simulation (tractrix_simulation_set)
 } TractrixParameter;
 
-// A row of the table, valid for ever; NULL: there are no more. Without those that name outputs,
-// caches, devices and messages: these belong to the program.
+// Returns row `index` of the table of parameters, or NULL if `index` is not below the number of
+// rows. Rows stay valid until the process ends. The table does not contain the options that only
+// concern the program tractrix-render: outputs, caches, devices and messages.
 const TractrixParameter *tractrix_parameter(size_t index);
 
-// --- Scenes: hair, mesh, parameters, lights, motion. Need no device.
+// --- Scenes: hair, mesh, parameters, lights and motion. A scene needs no device.
 
 typedef struct TractrixStrands {
     size_t size;
-    double metres_per_unit; // > 0
-    bool up_z;              // z is up
-    uint32_t strand_count;
-    uint32_t vertices_each; // of every strand, 2 to 65,535, if `sizes` is NULL
-    const uint32_t *sizes;  // [strand_count]
-    const float *position;  // [vertices of all strands][3], root first
-    const float *thickness; // [vertices], in any unit: the parameter `radius` is the radius where
-                            // it equals its mean over all vertices; NULL: even
-    const float *color;     // [vertices][4], linear RGB and opacity; NULL: by parameters
-    const float *uv;        // [strand_count][2], of the root; NULL: none
+    double metres_per_unit; // unit of `position`, above 0 to 1e9
+    bool up_z;              // z is up in `position`, not y
+    uint32_t strand_count;  // at least 1
+    uint32_t vertices_each; // if `sizes` is NULL: vertices of every strand, 2 to 65,535
+    const uint32_t *sizes;  // [strand_count]: vertices of each strand, 2 to 65,535; NULL: all equal
+    const float *position;  // [vertices of all strands][3], strand by strand, root first; at most
+                            // 1e6 m from 0 on each axis
+    const float *thickness; // [vertices], in any unit. A vertex with the mean thickness has the
+                            // radius that the parameter `radius` sets; the radii of other vertices
+                            // are in proportion. NULL: all equal
+    const float *color; // [vertices][4]: linear RGB and opacity, 0 to 1; NULL: parameters decide
+    const float *uv;    // [strand_count][2]: texture coordinates of the root; NULL: none
 } TractrixStrands;
 
 typedef struct TractrixMesh {
     size_t size;
-    double metres_per_unit; // > 0
-    bool up_z;
-    bool deforms; // tractrix_simulation_advance_mesh will move its vertices: hair is bound to it
-    uint32_t vertex_count, triangle_count;
-    const float *position;    // [vertex_count][3], while the head's pose is the identity
-    const uint32_t *triangle; // [triangle_count][3], counter-clockwise from outside
+    double metres_per_unit; // unit of `position`, above 0 to 1e9
+    bool up_z;              // z is up in `position`, not y
+    bool deforms;           // tractrix_simulation_advance_mesh will move the vertices; hair is then
+                            // bound to the mesh at its roots
+    uint32_t vertex_count, triangle_count; // at least 3 and 1
+    const float *position;    // [vertex_count][3], for a head whose pose is the identity; at most
+                              // 1e6 m from 0 on each axis
+    const uint32_t *triangle; // [triangle_count][3]: indices of vertices, counter-clockwise as seen
+                              // from outside
 } TractrixMesh;
 
-// Empty, with the defaults of a look: "studio" (NULL) or "plain".
+// Creates a scene without hair. `look` chooses the defaults of lights, fibres, exposure and
+// background: "studio" or "plain"; NULL: "studio".
 TractrixResult tractrix_scene_create(TractrixScene **scene, const char *look, TractrixError *error);
-// From a scene file or a hair file; "-" is refused. Hair and meshes that it names are there now,
-// and are read by each tractrix_simulation_create, as the parameters then say (unit, up, ...);
-// whether all files of a pattern (mesh_%04d.obj) are there is found out then.
+// Creates a scene from a scene file, or from a hair file: the scene then has this hair and default
+// parameters. `path` "-" (standard input) is refused with TRACTRIX_USAGE. The function checks that
+// the scene's hair files and meshes can be opened (TRACTRIX_BAD_INPUT if not), but does not read
+// them: each tractrix_simulation_create reads them. So you can still change parameters that affect
+// reading, such as `unit` and `up`. If the mesh is a pattern of numbered files (mesh_%04d.obj),
+// its files are checked only by tractrix_simulation_create.
 TractrixResult tractrix_scene_read(TractrixScene **scene, const char *path, TractrixError *error);
-// From a scene file's text; relative paths in it begin at `folder` (NULL: the working folder).
+// The same with the text of a scene file. Relative paths in the text are relative to `folder`;
+// NULL: the current directory.
 TractrixResult tractrix_scene_parse(TractrixScene **scene, const char *json, const char *folder,
                                     TractrixError *error);
 void tractrix_scene_destroy(TractrixScene *scene);
 
-// Appends a section; `name` (NULL: "strands") stands for it in messages. TRACTRIX_BAD_INPUT with
-// the number of a strand whose neighbouring vertices coincide or whose numbers are not finite.
+// Appends a section of hair. `name` identifies the section in messages; NULL: "strands".
+// TRACTRIX_BAD_INPUT if a strand has fewer than 2 or more than 65,535 vertices, a number that is
+// not finite, a coordinate beyond 1e6 m, or two neighbouring vertices that coincide; the error text
+// has the number of the strand, counted from 0.
 TractrixResult tractrix_scene_add_strands(TractrixScene *scene, const char *name,
                                           const TractrixStrands *strands, TractrixError *error);
-// Replaces the mesh; NULL: none. Hair collides with it, and it hides hair.
+// Sets the mesh and replaces an earlier one; `mesh` NULL removes it. Hair collides with the mesh,
+// and the mesh hides hair behind it. TRACTRIX_USAGE if the scene has several bodies;
+// TRACTRIX_BAD_INPUT if a triangle has an index that is too large, or a coordinate is not finite or
+// beyond 1e6 m.
 TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh *mesh,
                                        TractrixError *error);
 uint32_t tractrix_scene_section_count(const TractrixScene *scene);
 
-// A parameter from its text as a flag has it: ("wind", "2,0,0"). `section` -1: all that there are,
-// and the run. TRACTRIX_USAGE with what was expected. That a parameter has no effect, or that two
-// exclude each other, is TRACTRIX_USAGE of tractrix_simulation_create.
+// Sets a parameter. `text` is the value as written on the command line: ("wind", "2,0,0").
+// `section`: the index of a section, for a parameter with `of_section`; -1 sets such a parameter in
+// all sections that the scene has now, and is the only valid value for all other parameters.
+// TRACTRIX_USAGE if the name, the section or the value is wrong; the error text says what is
+// expected. Conflicts between parameters, and parameters without any effect, are found by
+// tractrix_simulation_create.
 TractrixResult tractrix_scene_set(TractrixScene *scene, int section, const char *name,
                                   const char *text, TractrixError *error);
-// A parameter's text (`section` -1: that of the first), and the whole scene as JSON: at most `room`
-// bytes with the zero. They return the length that there would be, without it; 0: an empty text, no
-// such parameter or section, or no memory.
+// These two functions write a text: the value of a parameter (`section` -1: the value in the first
+// section), or the whole scene as JSON. The JSON does not contain arrays; it only names them.
+// `room` is the size of the buffer `text` in bytes. A longer text is cut; the text always ends with
+// a zero byte, unless `room` is 0 or `text` is NULL: then nothing is written. Both functions return
+// the length of the complete text without the zero byte, as snprintf does. They return 0 if the
+// text is empty, if there is no such parameter or section, or if memory is short.
 size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *name, char *text,
                           size_t room);
 size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room);
 
 // --- Simulations.
 
-typedef struct TractrixPose {           // x_world = rotation x + translation
-    double rotation[4], translation[3]; // unit quaternion x y z w; m
+// Places the head in the world: x_world = rotation * x_head + translation. The rotation is a
+// quaternion x, y, z, w whose length differs from 1 by less than 1e-3. The translation is in
+// metres, -1e6 to 1e6.
+typedef struct TractrixPose {
+    double rotation[4], translation[3];
 } TractrixPose;
 
-// Of the scene as it is now; later changes of it change nothing here. Time is 0, the warm-up
-// (--preroll) is done. TRACTRIX_USAGE if there is no hair, or parameters do not fit together.
+// Creates a simulation of the scene as it is now; later changes of the scene do not affect the
+// simulation. This call reads the scene's files and simulates the warm-up (parameter `preroll`).
+// After it, the time is 0. TRACTRIX_USAGE if the scene has no hair, if parameters contradict each
+// other, or if a parameter would have no effect; TRACTRIX_BAD_INPUT if a file is wrong.
 TractrixResult tractrix_simulation_create(TractrixSimulation **simulation, TractrixDevice *device,
                                           const TractrixScene *scene, TractrixError *error);
 void tractrix_simulation_destroy(TractrixSimulation *simulation);
 
-// Lines about what was mended, guessed or left out when the scene was read, each with a line end;
-// "": none. Valid while the simulation lives.
+// Returns messages about what was repaired, guessed or ignored when the scene was read: lines that
+// each end with a line feed, or "" if there are none. The text is valid until the simulation is
+// destroyed.
 const char *tractrix_simulation_messages(const TractrixSimulation *simulation);
 
-// As tractrix_scene_set, from the next step or image on, for live parameters (TractrixParameter):
-// of gravity, wind, the camera, sky and ground.
+// Changes a parameter of a running simulation, from the next step or image on. Only parameters with
+// `live` (TractrixParameter) can be changed: those of gravity, wind, camera, sky and ground. The
+// value replaces the keyframes of the parameter, if it has any. TRACTRIX_USAGE if the parameter is
+// not live or the value is wrong.
 TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const char *name,
                                        const char *text, TractrixError *error);
 
-// On by one frame, 1 / fps seconds. `head`: where the head and the mesh are at its end, reached
-// evenly; NULL: as the scene says, or where they are once a pose was given. Only queues GPU work.
-// TRACTRIX_USAGE for a pose where a frame is no whole number of steps (fps and sim_rate), where the
-// mesh deforms, or where the scene has several bodies.
+// Simulates one frame: the video advances by 1 / fps seconds, the scene's time by speed / fps
+// seconds (parameters `fps` and `speed`, which is 1 by default). `head` is the pose of the head,
+// and of the mesh, at the end of the frame; the head moves there at constant speed during the
+// frame. `head` NULL: the head moves as the scene says, or stays where it is if an earlier call has
+// given a pose. The call only queues GPU work and does not wait for it. A pose is refused with
+// TRACTRIX_USAGE if a frame is not a whole number of simulation steps (parameters `fps`, `speed`,
+// `sim_rate`, `substeps`), if the mesh deforms, if the scene has several bodies, or if the pose is
+// outside the ranges of TractrixPose.
 TractrixResult tractrix_simulation_advance(TractrixSimulation *simulation, const TractrixPose *head,
                                            TractrixError *error);
-// The same with the vertices of the mesh (TractrixMesh.deforms) at the frame's end, in the world:
-// [vertex_count][3], m, y up. Vertices go straight; hair follows the skin at its roots.
+// Simulates one frame like tractrix_simulation_advance, with the vertices of a mesh that deforms
+// (TractrixMesh.deforms). `position`: [vertex_count][3], where the vertices are at the end of the
+// frame, in world space, m, y up. During the frame each vertex moves in a straight line. The roots
+// of the hair follow the mesh. TRACTRIX_USAGE if the scene has no such mesh, if it has another
+// number of vertices, or if a frame is not a whole number of steps; TRACTRIX_BAD_INPUT if a
+// coordinate is not finite or beyond 1e6 m.
 TractrixResult tractrix_simulation_advance_mesh(TractrixSimulation *simulation,
                                                 const float *position, uint32_t vertex_count,
                                                 TractrixError *error);
-double tractrix_simulation_time(const TractrixSimulation *simulation); // s, of the scene
+double tractrix_simulation_time(const TractrixSimulation *simulation); // scene time, s
 
 typedef enum TractrixPart { TRACTRIX_GUIDES = 0, TRACTRIX_FOLLOWERS = 1 } TractrixPart;
 
-typedef struct TractrixPositions { // strands in the order they came in, followers guide by guide
+// Guides have the order of the array or file that they come from. Followers follow in the order of
+// their guides: all followers of the first guide, then those of the second, and so on.
+typedef struct TractrixPositions {
     size_t size;
-    uint32_t strand_count, vertex_count; // of all strands; there may be no followers
-    const uint32_t *sizes;               // [strand_count], vertices; never changes
-    const float *position;               // [vertex_count][4], x y z 1 in the world, root first
+    uint32_t strand_count, vertex_count; // total of all strands; both 0 if there are no followers
+    const uint32_t *sizes;               // [strand_count]: vertices of each strand; never changes
+    const float *position;               // [vertex_count][4]: x, y, z, 1 in world space, m, strand
+                                         // by strand, root first
 } TractrixPositions;
 
-// The positions as drawn now. Waits for the GPU. They are valid, and constant, until the next
-// advance, set, map of this part or destroy.
+// Fills `positions` with the current positions of a section's guides or followers, exactly as the
+// renderer draws them. `section` is the section's index, from 0. The call waits for the GPU. The
+// arrays belong to the simulation. They stay valid and unchanged until the next call that advances
+// the simulation, sets one of its parameters, maps the same part of the same section, or destroys
+// the simulation.
 TractrixResult tractrix_simulation_map(TractrixSimulation *simulation, int section,
                                        TractrixPart part, TractrixPositions *positions,
                                        TractrixError *error);
 
-// The same without waiting, to byte `offset` (a multiple of 16) of a buffer of the borrowed
-// context. TRACTRIX_USAGE if the buffer is too small or the device is not borrowed, TRACTRIX_FAILED
-// if the positions are more than the driver lets a shader write (OpenGL 4.3: at least 16 MiB).
+// Copies the same positions on the GPU into `buffer`, an OpenGL buffer of the borrowed context,
+// from byte `offset` on, a multiple of 16. The layout is that of TractrixPositions.position: 16
+// bytes a vertex. The call only queues GPU work and does not wait for it. TRACTRIX_USAGE if the
+// buffer does not exist or is too small, or if the device is not borrowed. TRACTRIX_FAILED if the
+// positions need more bytes than the driver lets a shader write; OpenGL 4.3 guarantees 16 MiB.
 TractrixResult tractrix_simulation_copy_to_gl(TractrixSimulation *simulation, int section,
                                               TractrixPart part, uint32_t buffer, size_t offset,
                                               TractrixError *error);
@@ -207,67 +274,87 @@ TractrixResult tractrix_simulation_copy_to_gl(TractrixSimulation *simulation, in
 // --- Images.
 
 typedef enum TractrixFormat {
-    TRACTRIX_RGBA8 = 0,   // sRGB, straight alpha
-    TRACTRIX_RGBA32F = 1, // linear light, premultiplied alpha
-    TRACTRIX_RGBA16 = 2   // as RGBA8
+    TRACTRIX_RGBA8 = 0,   // 8 bits a channel, sRGB, straight alpha
+    TRACTRIX_RGBA32F = 1, // 32-bit floats, linear light, premultiplied alpha
+    TRACTRIX_RGBA16 = 2   // 16 bits a channel, sRGB, straight alpha
 } TractrixFormat;
 
-typedef struct TractrixImage { // top row first
+typedef struct TractrixImage { // the first row is the top one
     size_t size;
     int width, height; // px, 1 to 16,384
     TractrixFormat format;
-    size_t row_bytes; // from row to row; 0: without gaps
-    void *pixels;
+    size_t row_bytes; // bytes from the start of a row to the start of the next, a multiple of the
+                      // size of a channel; 0: rows without gaps
+    void *pixels;     // [height] rows of [width] pixels: red, green, blue, alpha
 } TractrixImage;
 
-typedef struct TractrixView { // column by column, as glUniformMatrix4fv has them
+typedef struct TractrixView { // matrices in column-major order, as for glUniformMatrix4fv
     size_t size;
-    float world_to_eye[16]; // a rotation and a translation, nothing else
-    float projection[16];   // eye to clip space, perspective, near and far finite
+    float world_to_eye[16]; // rotation and translation, without scale or mirroring
+    float projection[16];   // eye space to OpenGL's clip space: a perspective that looks along -z,
+                            // with 0 < near < far < infinity
 } TractrixView;
 
-// Draws by the scene's parameters. An automatic exposure is found now (RGBA32F: light as it is).
+// Creates a renderer with the parameters of the simulation's scene. `width`, `height`: 1 to 16,384
+// px. If `exposure` is automatic, this call measures the exposure once; with TRACTRIX_RGBA32F an
+// automatic exposure is 0, so pixels have the light of the scene unchanged.
 TractrixResult tractrix_renderer_create(TractrixRenderer **renderer, TractrixSimulation *simulation,
                                         int width, int height, TractrixFormat format,
                                         TractrixError *error);
 void tractrix_renderer_destroy(TractrixRenderer *renderer);
 
-// Draws as things are now into image->pixels, of the renderer's size and format, and waits. `view`
-// NULL: the scene's camera. Alpha is 1 where the background is opaque.
+// Renders the current state of the simulation into image->pixels and waits until the image is
+// complete. `view` NULL: the scene's camera. Alpha is 1 everywhere unless the parameter
+// `background` is transparent. TRACTRIX_USAGE if the image does not have the size and format of the
+// renderer, or if a matrix of the view is not as TractrixView says.
 TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
                                TractrixImage *image, TractrixError *error);
 
-// PNG, EXR and PFM files by content; alpha 1 where they have none. The image lives as long as the
-// picture. Written by suffix: .png, or .jpg (.jpeg) of opaque RGBA8; .exr or .pfm of floats. Pixels
-// that are all opaque are written without alpha, as tractrix-render does. TRACTRIX_USAGE for a
-// format that the file cannot hold.
+// Reads a PNG, EXR or PFM file. The content decides which, not the name. Alpha is 1 if the file has
+// none. TRACTRIX_BAD_INPUT if the file is of another kind (JPEG, too) or damaged.
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,
                                      TractrixError *error);
+// Returns the picture's image, which is valid until the picture is destroyed.
 const TractrixImage *tractrix_picture_image(const TractrixPicture *picture);
 void tractrix_picture_destroy(TractrixPicture *picture);
+// Writes an image file. The suffix of `path` decides the file format: .png for TRACTRIX_RGBA8 and
+// TRACTRIX_RGBA16; .jpg or .jpeg for TRACTRIX_RGBA8 with all pixels opaque; .exr or .pfm for
+// TRACTRIX_RGBA32F. If all pixels are opaque, the file has no alpha channel. A .pfm file never has
+// one: alpha is dropped. TRACTRIX_USAGE for another suffix or a format that does not suit the
+// suffix.
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error);
 
-typedef struct TractrixLimits { // as tractrix-compare's; all 0: equal images alone are the same
+// Limits within which two images count as the same, as the options of tractrix-compare. If all
+// members but `size` are 0, only equal images are the same. TRACTRIX_USAGE if a limit is out of
+// range or if neither pixels nor FLIP count.
+typedef struct TractrixLimits {
     size_t size;
-    double pixel_tolerance; // levels of 255 that a pixel may be off; below 0: pixels don't count
-    double max_failing_percent; // of the compared pixels that may be off by more
-    double max_flip;            // above 0 to 1: of FLIP's mean; 0 or less: FLIP does not count
-    double pixels_per_degree;   // of FLIP; 0: 67
+    double pixel_tolerance; // a pixel fails if a channel differs by more than this, in levels of 0
+                            // to 255; at most 255; below 0: failing pixels do not count
+    double max_failing_percent; // how many of the compared pixels may fail, 0 to 100 %
+    double max_flip;            // largest allowed mean of FLIP, at most 1; 0 or less: no such limit
+    double pixels_per_degree;   // viewing distance for FLIP, 1 to 1000; 0: the default, 67
 } TractrixLimits;
 
-typedef struct TractrixFigures { // docs/compare.md has the definitions
+typedef struct TractrixFigures { // docs/compare.md defines the figures
     size_t size;
-    uint64_t compared, failing; // pixels
-    double largest;             // difference of a channel, levels of 255
-    int at[2];                  // x, y of the first pixel that has it
+    uint64_t compared, failing; // numbers of pixels; `failing` of the compared pixels fail
+    double largest;             // largest difference of a channel, in levels of 0 to 255
+    int at[2];                  // x, y of the first pixel with this difference, from the top left
+    // `rmse` is in levels, `psnr` in dB; `flip` is the mean of FLIP and `flip_most` its largest
+    // value, 0 to 1. Equal images: rmse 0, psnr INFINITY, ssim 1, flip and flip_most 0.
     double rmse, psnr, ssim, flip, flip_most;
-    bool same; // within the limits
+    bool same; // the images are the same within the limits
 } TractrixFigures;
 
-// `mask`: white is compared, black is not; NULL: all is. `map`: [height][width], FLIP of each
-// pixel, NaN where masked; NULL: none. `limits` NULL: equal only. That images differ is no failure,
-// that their sizes do is TRACTRIX_USAGE.
+// Compares two images of the same size. Their formats may differ. `mask` is an image of the same
+// size: pixels where the mask is black are ignored, pixels where it is white (luma at least half)
+// or transparent are compared; NULL: all pixels are compared. `map` is an array [height][width]
+// that receives FLIP's error of each pixel, NaN for ignored pixels; NULL: not wanted. `limits`
+// NULL: only equal images are the same. If the images differ, the function still returns
+// TRACTRIX_OK; see figures->same. TRACTRIX_USAGE if the sizes differ, TRACTRIX_BAD_INPUT if the
+// mask is all black.
 TractrixResult tractrix_compare(TractrixFigures *figures, float *map, const TractrixImage *a,
                                 const TractrixImage *b, const TractrixImage *mask,
                                 const TractrixLimits *limits, TractrixError *error);
