@@ -120,7 +120,8 @@ typedef struct TractrixStrands {
     bool up_z;              // z is up in `position`, not y
     uint32_t strand_count;  // at least 1
     uint32_t vertices_each; // if `sizes` is NULL: vertices of every strand, 2 to 65,535
-    const uint32_t *sizes;  // [strand_count]: vertices of each strand, 2 to 65,535; NULL: all equal
+    const uint32_t *sizes;  // [strand_count]: vertices of each strand, 2 to 65,535; NULL: all
+                            // strands have `vertices_each`
     const float *position;  // [vertices of all strands][3], strand by strand, root first; at most
                             // 1e6 m from 0 on each axis
     const float *thickness; // [vertices], in any unit. A vertex with the mean thickness has the
@@ -201,9 +202,10 @@ typedef struct TractrixPose {
 } TractrixPose;
 
 // Creates a simulation of the scene as it is now; later changes of the scene do not affect the
-// simulation. This call reads the scene's files and simulates the warm-up (parameter `preroll`).
-// After it, the time is 0. TRACTRIX_USAGE if the scene has no hair, if parameters contradict each
-// other, or if a parameter would have no effect; TRACTRIX_BAD_INPUT if a file is wrong.
+// simulation. The call reads the scene's hair files and meshes and simulates the warm-up (parameter
+// `preroll`). After the call the time is 0. TRACTRIX_USAGE if the scene has no hair, if parameters
+// contradict each other, or if a parameter would have no effect; TRACTRIX_BAD_INPUT if a file is
+// wrong.
 TractrixResult tractrix_simulation_create(TractrixSimulation **simulation, TractrixDevice *device,
                                           const TractrixScene *scene, TractrixError *error);
 void tractrix_simulation_destroy(TractrixSimulation *simulation);
