@@ -251,7 +251,7 @@ SEED = 1
 torture: all tests ## every call of small runs fails in turn, 200 kills: an hour or so (SEED=N, TORTURE_OPTIONS="--only convert")
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
-growth: all tests ## 10,000 scenes and simulations of the library and 100 devices: what stays: ten minutes
+growth: all tests ## 10,000 scenes and simulations of the library and 100 devices: what stays: half an hour or more
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
 
 # --- Static checks and the sanitizers. All of them run, then the failed ones are named. A single one: make

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The colour that hair gives to the skin it grows from: where roots lie close together, skin goes
 // towards their colour, and at the hairline and at partings softly back to its own. Found once, at
-// rest, for each vertex of the mesh, so it moves with the mesh and costs nothing in a frame.
+// rest, for each vertex of the mesh, so it moves with the mesh and a frame only interpolates it.
 #pragma once
 
 #include "mesh/mesh.h"

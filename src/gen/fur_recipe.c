@@ -112,7 +112,7 @@ static const Option OPTIONS[] = {
      "how far tips are pulled to the guide of their clump, as a share of the distance "
      "[default 0]"},
     {"clump-root", 0, OPTION_REAL, AT(clump_root), "SHARE", 0, 1,
-     "how far roots are pulled to it [default 0]"},
+     "how far roots are pulled to the guide of their clump, likewise [default 0]"},
     {"clump-profile", 0, OPTION_REAL, AT(clump_profile), "X", 0.01, 0.99,
      "where the strands of a clump come together: below 0.5 near the tip, above near the root "
      "[default 0.5]"},
@@ -141,15 +141,12 @@ static const Option OPTIONS[] = {
 
 static const char *const NOTES[] = {
     "Lengths are in metres. M stands for a length, MAP for a number, a PNG file or a formula, "
-    "whose "
-    "value may be another one at each place of the mesh. A PNG file is placed by the mesh's "
-    "texture "
-    "coordinates; black is 0, white is 1.",
+    "whose value may be another one at each place of the mesh. A PNG file is placed by the mesh's "
+    "texture coordinates; black is 0, white is 1.",
     "A formula may use the position x, y, z, the normal nx, ny, nz, the texture coordinates u, v, "
     "the operators + - * / ^, comparisons, a ? b : c, and the functions of muParser (sqrt, abs, "
     "min, max, sin ...). smoothstep(a, b, x) rises from 0 at x = a to 1 at x = b. noise(x, y, z) "
-    "is "
-    "a random number between -1 and 1 that changes smoothly over distances of 1, so "
+    "is a random number between -1 and 1 that changes smoothly over distances of 1, so "
     "noise(x/0.03, y/0.03, z/0.03) changes over 3 cm.",
     "Hair that would grow through the mesh is bent out of it. Where two parts of the mesh overlap, "
     "roots of one may lie inside the other: exclude them by --density.",

@@ -357,6 +357,7 @@ static void end_stock(Stock *stock, bool lost)
 static void end(Gpu *gpu, bool lost)
 {
     end_stock(gpu->tables, lost);
+    shader_forget_programs(gpu->programs);
     end_stock(gpu->programs, lost);
     gpu_uniforms_destroy(gpu->uniforms, lost);
     gpu_egl_destroy(&gpu->egl);

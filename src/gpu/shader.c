@@ -43,6 +43,11 @@ void shader_use_programs(Stock *stock)
     programs = stock;
 }
 
+void shader_forget_programs(const Stock *stock)
+{
+    if (programs == stock) programs = NULL;
+}
+
 void shader_ignore_environment(void)
 {
     atomic_store(&environment_ignored, true);
@@ -350,6 +355,7 @@ Result shader_build_draw(GLuint *program, const char *vertex_file, const char *f
 
 void shader_release(GLuint program)
 {
+    if (!program) return;
     for (GLuint *kept = stock_next(programs, NULL); kept; kept = stock_next(programs, kept))
         if (*kept == program) {
             stock_return(programs, kept);

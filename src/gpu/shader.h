@@ -47,6 +47,9 @@ void shader_release(GLuint program);
 // Sets the stock in which this thread's programs are kept, that of its current context.
 void shader_use_programs(Stock *programs);
 
+// Makes this thread use that stock no longer, before it is destroyed.
+void shader_forget_programs(const Stock *programs);
+
 // The folder of TRACTRIX_GLSL_DIR; NULL if the built-in shaders are used. If TRACTRIX_GLSL_DUMP
 // names a folder, the joined source of every shader that is built is written there, for other
 // compilers: draw_hair.frag becomes draw_hair.HASH.frag.

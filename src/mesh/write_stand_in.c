@@ -26,5 +26,5 @@ int main(void)
     printf("};\nconst StandInTable STAND_IN_TABLE = {%u, %u, POSITIONS, TRIANGLES};\n",
            mesh.vertex_count, mesh.triangle_count);
     mesh_destroy(&mesh);
-    return fflush(stdout) != 0;
+    return fflush(stdout) != 0 || ferror(stdout);
 }

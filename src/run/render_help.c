@@ -60,13 +60,10 @@ static const char *const SCENE_KEYS[][3] = {
      "(those of muParser), smoothstep(a, b, x)"},
     {"bodies",
      "[{\"mesh\": \"a.npz\", \"sections\": [{\"file\": \"a.tfx\"}]}, {\"mesh\": \"b.obj\", "
-     "\"head\": "
-     "{...}, \"sections\": [...]}]",
+     "\"head\": {...}, \"sections\": [...]}]",
      "up to 16 heads or bodies in place of sections and head: each with its sections and, if it "
-     "has "
-     "them, its own head, colliders and values of the options marked +. Hair collides with the "
-     "mesh "
-     "and the colliders of its own body"},
+     "has them, its own head, colliders and values of the options marked +. Hair collides with "
+     "the mesh and the colliders of its own body"},
     {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
      "gravity or wind that changes over time; a constant value is an array of three numbers"},
     {"camera",
@@ -100,8 +97,8 @@ static const OptionsChapter SCENE_FILES = {
         "A scene file is a JSON object. Its keys are the options, with '_' in place of '-'. Values "
         "are numbers, true or false, arrays for X,Y,Z and WxH, and strings for everything else. "
         "Options marked * can be in a section, or beside the sections and then hold for all of "
-        "them; so can options marked + in a body. Paths are relative to the file's folder. Numbers "
-        "and colors of a section can "
+        "them. Options marked + can be in a body, or beside the list of bodies and then hold for "
+        "all of them. Paths are relative to the file's folder. Numbers and colors of a section can "
         "change over time: {\"keys\": [{\"time\": 0, \"value\": 0.5}, ...]}; numbers also by a "
         "formula: {\"formula\": \"0.5*exp(-t)\"}. "
         "Values between keyframes are interpolated smoothly (monotone "

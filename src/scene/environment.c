@@ -37,16 +37,17 @@ static void find_part(EnvironmentPart *part, const Image *image, int row, int co
            left = (double)column / COLUMNS, right = (double)(column + 1) / COLUMNS;
     double sum[3] = {0}, all = 0, up = -(height(top) + height(bottom)), wide = sqrt(1 - up * up),
            turn = 2 * M_PI * (0.5 * (left + right) - 0.5);
-    for (int y = (int)(top * image->height); y < (int)ceil(bottom * image->height); ++y)
+    for (int y = (int)(top * image->height); y < (int)ceil(bottom * image->height); ++y) {
+        double tall = overlap(y, image->height, top, bottom, height);
         for (int x = (int)(left * image->width); x < (int)ceil(right * image->width); ++x) {
-            double area = overlap(y, image->height, top, bottom, height) *
-                          overlap(x, image->width, left, right, longitude);
+            double area = tall * overlap(x, image->width, left, right, longitude);
             const float *pixel =
                 (const float *)(const void *)image->pixels +
                 (size_t)image->channels * ((size_t)y * (size_t)image->width + (size_t)x);
             for (int c = 0; c < 3; ++c) sum[c] += area * fmax((double)pixel[c], 0);
             all += area;
         }
+    }
     *part =
         (EnvironmentPart){.way = {(float)(wide * sin(turn)), (float)up, (float)(-wide * cos(turn))},
                           .share = (float)((height(bottom) - height(top)) / COLUMNS)};

@@ -132,7 +132,9 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
         }
         if (sink->tracks) section_tracks_drop(sink->tracks, info);
         if (shapes) TRY(read_colliders(sink->colliders, &place, value, error));
-        if (!keys && !(shapes && json_is_array(value)))
+        if (shapes && json_is_array(value)) // not the text of the defaults beside this list
+            TRY(params_parse(info, sink->params, "", error));
+        else if (!keys)
             TRY(scene_param_read(info, sink->params, document->folder, &place, value, error));
     }
     return RESULT_OK;
@@ -233,8 +235,9 @@ static Result read_sections(Scene *scene, const Document *document, const Sectio
     if (!array) return json_fail(of, error, "expected a key 'sections'");
     JsonPlace place = {.parent = of, .key = "sections"};
     size_t count = json_array_size(array);
-    if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS)
-        return json_refuse(&place, array, "an array of 1 to 1024 sections", error);
+    if (!json_is_array(array) || count == 0 || count > SCENE_MAX_SECTIONS - scene->section_count)
+        return json_refuse(&place, array, "an array of 1 to 1024 sections, all bodies together",
+                           error);
     for (size_t i = 0; i < count; i++) {
         JsonPlace element = {.parent = &place, .index = i};
         TRY(read_section(scene, document, defaults, &element, json_array_get(array, i), error));

@@ -31,10 +31,10 @@ static void fill_points(float points[POINTS][4], bool along_x, float edge, float
     }
 }
 
-// Eight rays in two rings resolve the share behind a strand's edge, in this position, to 0.14, and
-// their three turns resolve that behind a mesh's edge to 0.1. The mean over the points equals the
-// disc's, except for the strand's depth.
-static void expect_shares(const float light[POINTS], const double expected[POINTS])
+// Eight rays in two rings resolve the share behind a strand's edge to 0.08, and their three turns
+// resolve that behind a mesh's edge to 0.1. The mean over the points equals the disc's, except for
+// the strand's depth.
+static void expect_shares(const float light[POINTS], const double expected[POINTS], double allowed)
 {
     double sum = 0, most = 0;
     for (int i = 0; i < POINTS; ++i) {
@@ -42,7 +42,7 @@ static void expect_shares(const float light[POINTS], const double expected[POINT
         most = fmax(most, fabs((double)light[i] - expected[i]));
     }
     print_message("off by %.3f at most, by %.4f in the mean\n", most, sum);
-    if (!(most <= 0.14 && fabs(sum) <= 0.02))
+    if (!(most <= allowed && fabs(sum) <= 0.015))
         fail_msg("off by %g at most, by %g in the mean", most, sum);
 }
 
@@ -63,7 +63,7 @@ static void a_meshs_edge_hides_its_share(void **state)
         for (int i = 0; i < POINTS; ++i)
             expected[i] = disc_beyond(((double)points[i][0] - 0.3) / wide);
         float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
-        expect_shares(share, expected);
+        expect_shares(share, expected, 0.1);
         free(share);
         shadow_stage_close(&stage);
     }
@@ -89,7 +89,7 @@ static void a_lamps_radius_is_a_length(void **state)
         for (int i = 0; i < POINTS; ++i)
             expected[i] = disc_beyond(((double)points[i][0] - edge) / wide);
         float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
-        expect_shares(share, expected);
+        expect_shares(share, expected, 0.1);
         free(share);
         shadow_stage_close(&stage);
     }
@@ -116,7 +116,7 @@ static void a_strand_hides_its_share(void **state)
                 1 - 0.8 * (disc_beyond((z + half) / wide) - disc_beyond((z - half) / wide));
         }
         float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
-        expect_shares(share, expected);
+        expect_shares(share, expected, 0.08);
         free(share);
         shadow_stage_close(&stage);
     }
@@ -176,7 +176,8 @@ static void a_lobe_is_widened_as_its_mean(void **state)
                       off / peak);
         // A disc has no tails, unlike a Gaussian: the error is largest for lobes narrower than the
         // disc.
-        if (!(off < 0.12 * peak)) fail_msg("off by %g of %g", off, peak);
+        if (!(off < (sigma < radius / 2 ? 0.12 : 0.03) * peak))
+            fail_msg("off by %g of %g", off, peak);
     }
 }
 

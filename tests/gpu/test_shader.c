@@ -54,6 +54,9 @@ static void the_same_files_and_macros_are_one_program(void **state)
     shader_release(first);
     shader_release(other);
     shader_release(rounded);
+    shader_use_programs(NULL);
+    shader_release(0); // without a stock, too
+    shader_use_programs(gpu.programs);
 }
 
 static uint32_t count_programs(void)

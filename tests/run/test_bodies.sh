@@ -16,6 +16,7 @@ echo "{$run, $one}" >"$work/one.json"
 echo "{$run, $two}" >"$work/two.json"
 echo "{$run, \"bodies\": [{$one}, {$two}]}" >"$work/both.json"
 echo "{$run, \"bodies\": [{$one}]}" >"$work/listed.json"
+echo "{$run, \"bodies\": [{$two}, {$one}]}" >"$work/swapped.json"
 both="$work/both.json"
 
 claim "a list of one body is the scene without a list"
@@ -45,6 +46,10 @@ for other in played farm resumed; do
     if diff -r "$work/direct" "$work/$other" >"$work/err"; then good; else bad "$other differs"; fi
 done
 if cmp -s "$work/direct/frame_0000.png" "$work/direct/frame_0003.png"; then bad "nothing moves"; else good; fi
+
+claim "each body is drawn where it is, whichever stands first"
+run 0 "$work/swapped.json" -q -o "$work/swapped/"
+holds "$bin/tractrix-compare" -q "$work/direct/frame_0003.png" "$work/swapped/frame_0003.png" --pixel-tolerance 8 --max-failing-pixels 1%
 
 claim "what one body changes is found by the cache"
 sed 's/200\*t/190*t/' "$both" >"$work/other.json"

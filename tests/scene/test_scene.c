@@ -295,6 +295,15 @@ static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
     if (read_scene(state, &scene, formulas, &error) != RESULT_OK) fail_msg("%s", error.text);
     assert_written_again(state, &scene);
     scene_destroy(&scene);
+    // A body's own list takes the place of the default's text, even when the list is empty.
+    const char *bodies =
+        "{\"colliders\": \"sphere:0,0,0,1\", \"bodies\": [{\"colliders\": [], "
+        "\"sections\": [{\"file\": \"/a\"}]}, {\"sections\": [{\"file\": \"/b\"}]}]}";
+    if (read_scene(state, &scene, bodies, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_int_equal(scene.bodies[0].colliders.count, 0);
+    assert_int_equal(scene.bodies[1].colliders.count, 1);
+    assert_written_again(state, &scene);
+    scene_destroy(&scene);
 }
 
 // Exactly: if directions of light were normalised again, a few in a hundred would change by one
