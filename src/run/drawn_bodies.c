@@ -61,7 +61,7 @@ static bool move_body(DrawnBodies *drawn, uint32_t b)
     const Mesh *now = shape_now(drawn, b);
     if (b) {
         place(now, &way, &drawn->mesh, body->first);
-    } else {
+    } else if (now->vertex_count > 0) { // a body without a mesh has no arrays
         memcpy(drawn->mesh.position, now->position, now->vertex_count * sizeof *now->position);
         memcpy(drawn->mesh.normal, now->normal, now->vertex_count * sizeof *now->normal);
     }
