@@ -125,14 +125,12 @@ $(OUT)/tests/glsl_sources.c: scripts/embed-text $(TEST_SHADERS) $(OUT)/files
 	$(call run,EMBED,$(EMBED_GLSL) TEST_GLSL_SOURCES glsl/ $(TEST_SHADERS) >$@.tmp && mv $@.tmp $@)
 $(OUT)/report/report_texts.c: scripts/embed-text $(PAGES) $(OUT)/files
 	$(call run,EMBED,scripts/embed-text report/report.h 'ReportText*' REPORT_TEXTS src/report/ $(PAGES) >$@.tmp && mv $@.tmp $@)
-$(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o: %.o: %.c $(OUT)/flags # C guarantees only 4095 characters in a string; all compilers accept more
+$(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OUT)/report/report_texts.o $(OUT)/mesh/stand_in_table.o: %.o: %.c $(OUT)/flags # C guarantees only 4095 characters in a string; all compilers accept more
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/mesh/stand_in_table.c: $(OUT)/mesh/write_stand_in
 	$(call run,MAKE,$< >$@.tmp && mv $@.tmp $@)
 $(OUT)/mesh/write_stand_in: $(addprefix $(OUT)/,mesh/write_stand_in.o $(addprefix mesh/,head.o simplify.o surface_net.o mesh.o) base/error.o base/quote.o base/utf8.o) $(KEEP_$(CONFIG))
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ -lm $(LDLIBS))
-$(OUT)/mesh/stand_in_table.o: %.o: %.c $(OUT)/flags
-	$(call run,CC,$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<)
 $(OUT)/image/jpeg.o: C_FLAGS += -fno-sanitize=shift # stb_image_write shifts bits beyond an int on purpose
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 	$(call run,AR,rm -f $@ && $(AR) qcs $@ $(OBJECTS))

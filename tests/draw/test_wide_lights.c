@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float RADIUS_DEG = 10;
+static const float RADIUS_DEG = 10, DOWN = 0.4f; // m: the points lie below what hides light
 enum { POINTS = 25 };
 
 // The share of a unit disc on one side of a straight line, at the distance t from its middle.
@@ -46,22 +46,20 @@ static void expect_shares(const float light[POINTS], const double expected[POINT
         fail_msg("off by %g at most, by %g in the mean", most, sum);
 }
 
-static void a_meshs_edge_hides_its_share(void **state)
+// The shadow of a mesh's edge, which falls to x = `edge` (m) 0.4 m below the mesh, over a penumbra
+// of the half-width `wide` (m).
+static void expect_edge(const Light *light, float edge, double wide)
 {
-    (void)state;
-    const double down = 0.4, wide = down * tan((double)RADIUS_DEG * M_PI / 180);
     Mesh mesh = shadow_stage_square(-0.05f, 0.3f);
+    float points[POINTS][4];
+    double expected[POINTS];
+    fill_points(points, true, edge, 0.05f + DOWN, wide);
+    for (int i = 0; i < POINTS; ++i)
+        expected[i] = disc_beyond(((double)points[i][0] - (double)edge) / wide);
     for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
-        Light light = LIGHT_ABOVE;
         ShadowStage stage;
-        float points[POINTS][4];
-        double expected[POINTS];
-        light.radius = RADIUS_DEG;
-        shadow_stage_open(&stage, shadow_stage_layers(1), 0.001f, 0.3f, &mesh, &light);
+        shadow_stage_open(&stage, shadow_stage_layers(1), 0.001f, 0.3f, &mesh, light);
         shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, way);
-        fill_points(points, true, 0.3f, 0.05f + (float)down, wide);
-        for (int i = 0; i < POINTS; ++i)
-            expected[i] = disc_beyond(((double)points[i][0] - 0.3) / wide);
         float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
         expect_shares(share, expected, 0.1);
         free(share);
@@ -70,37 +68,30 @@ static void a_meshs_edge_hides_its_share(void **state)
     mesh_destroy(&mesh);
 }
 
+static void a_meshs_edge_hides_its_share(void **state)
+{
+    (void)state;
+    Light light = LIGHT_ABOVE;
+    light.radius = RADIUS_DEG;
+    expect_edge(&light, 0.3f, (double)DOWN * tan((double)RADIUS_DEG * M_PI / 180));
+}
+
 static void a_lamps_radius_is_a_length(void **state)
 {
     (void)state;
-    // The mesh is 2.05 m below the lamp, and the points are 0.4 m below the mesh's edge.
-    const double up = 2, down = 0.4, size = 0.3, wide = size * down / (up + 0.05);
-    Mesh mesh = shadow_stage_square(-0.05f, 0.3f);
-    for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
-        Light light = LIGHT_LAMP;
-        ShadowStage stage;
-        float points[POINTS][4];
-        double expected[POINTS], edge = 0.3 * (up + 0.05 + down) / (up + 0.05);
-        light.position[0] = light.position[2] = 0;
-        light.radius = (float)size;
-        shadow_stage_open(&stage, shadow_stage_layers(1), 0.001f, 0.3f, &mesh, &light);
-        shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, way);
-        fill_points(points, true, (float)edge, 0.05f + (float)down, wide);
-        for (int i = 0; i < POINTS; ++i)
-            expected[i] = disc_beyond(((double)points[i][0] - edge) / wide);
-        float *share = shadow_stage_light(&stage, (const float(*)[4])points, POINTS);
-        expect_shares(share, expected, 0.1);
-        free(share);
-        shadow_stage_close(&stage);
-    }
-    mesh_destroy(&mesh);
+    // The mesh is 2.05 m below the lamp.
+    const double up = 2.05, size = 0.3;
+    Light light = LIGHT_LAMP;
+    light.position[0] = light.position[2] = 0;
+    light.radius = (float)size;
+    expect_edge(&light, (float)(0.3 * (up + (double)DOWN) / up), size * (double)DOWN / up);
 }
 
 // One strand, as wide as the disc's apparent diameter at the points: the area between two edges.
 static void a_strand_hides_its_share(void **state)
 {
     (void)state;
-    const double down = 0.4, half = 0.06, wide = down * tan((double)RADIUS_DEG * M_PI / 180);
+    const double half = 0.06, wide = (double)DOWN * tan((double)RADIUS_DEG * M_PI / 180);
     for (ShadowWay way = SHADOW_BY_SHADERS; way <= SHADOW_BY_LANES; ++way) {
         Light light = LIGHT_ABOVE;
         ShadowStage stage;
@@ -109,7 +100,7 @@ static void a_strand_hides_its_share(void **state)
         light.radius = RADIUS_DEG;
         shadow_stage_open(&stage, shadow_stage_layers(1), (float)half, 0.8f, NULL, &light);
         shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, way);
-        fill_points(points, false, (float)half, (float)down, wide);
+        fill_points(points, false, (float)half, DOWN, wide);
         for (int i = 0; i < POINTS; ++i) {
             double z = (double)points[i][2];
             expected[i] =

@@ -167,7 +167,7 @@ static void surfaces_show_nearly_the_exact_light(void **state)
         off = fmax(off, fabs(shown(terms, 0, way[d]) - right));
     }
     print_message("off by %.3f of %.3f at most\n", off, most);
-    assert_true(off < 0.05 * most);
+    assert_true(off < 0.04 * most);
     environment_destroy(&environment);
 }
 
