@@ -52,6 +52,8 @@ claim "--help and --version are answered, wherever it stands and whatever may be
 run 0 --help; says "Usage: turntable [OPTION]... ASSET"; silent err
 run 0 --version; says "turntable "
 none out/turntable/--help
+# A parallel build makes its manual page before there are programs.
+TRACTRIX_BIN="$work/nowhere" run 0 --help; says "Usage: turntable [OPTION]... ASSET"; silent err
 
 claim "options of its own, and of tractrix-render without --"
 unset TURNTABLE_OUT TURNTABLE_S
