@@ -1245,6 +1245,8 @@ def camera_matrix(eye: np.ndarray, target: np.ndarray, up: np.ndarray) -> Matrix
 def place_camera(context, members: dict, times: np.ndarray) -> None:
     """A camera with the pose and the vertical field of view of a scene file."""
     track = members.get("camera", {})
+    if any(k in track for k in ("eye", "target", "fov")):
+        say("the camera moves by formulas, which Blender does not read: they are left out")
     if not isinstance(members.get("eye"), list) and not any("eye" in k for k in track.get("keys", [])):
         say("the scene file leaves the camera to Tractrix: no camera is made")
         return

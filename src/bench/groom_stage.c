@@ -57,8 +57,8 @@ static Result start_shaking(GroomStage *stage, Error *error)
 {
     RigidTrack *head = &stage->scene.bodies[0].head;
     memcpy(head->pivot, stage->middle, sizeof head->pivot);
-    for (int k = 0; k < 3; ++k)
-        TRY(formula_create(&head->rotation_formula[k], k == 1 ? YAW : "0", error));
+    for (uint32_t k = 0; k < 3; ++k)
+        TRY(track_set_formula(&head->rotation, k, k == 1 ? YAW : "0", &RIGID_TRACK_DEGREES, error));
     return RESULT_OK;
 }
 

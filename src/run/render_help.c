@@ -65,11 +65,14 @@ static const char *const SCENE_KEYS[][3] = {
      "has them, its own head, colliders and values of the options marked +. Hair collides with "
      "the mesh and the colliders of its own body"},
     {"gravity, wind", "{\"keys\": [{\"time\": 0, \"value\": [0, 0, 2]}, ...]}",
-     "gravity or wind that changes over time; a constant value is an array of three numbers"},
+     "gravity or wind that changes over time, by keys or by {\"formula\": [\"2*sin(t)\", 0, 0]}; a "
+     "constant value is an array of three numbers"},
     {"camera",
      "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
      "\"fov\": 30}, ...]}",
      "path of the camera; for values that are in no key, the option of that name holds"},
+    {"camera", "{\"eye\": [\"1.5*sin(t)\", 0.1, \"1.5*cos(t)\"], \"fov\": \"30-5*t\"}",
+     "the same by formulas; each value has keys or formulas"},
     {"colliders",
      "[{\"capsule\": [0, 1, 0, 0.08, 0, 1.4, 0, 0.05], \"frame\": \"head\"}, {\"ground\": 0}, ...]",
      "shapes that hair must not cross, with the numbers of --colliders (m); frame: head (the shape "

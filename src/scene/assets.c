@@ -108,8 +108,7 @@ static Result bind_hair(const BodyLoad *load, MeshSequence *sequence, const Mesh
                                  .cut_distance = load->run->teleport_distance,
                                  .cut_angle_deg = load->run->teleport_angle};
     const RigidTrack *head = &body->head;
-    bool tracked = head->translation.count || head->rotation.count ||
-                   head->translation_formula[0].text || head->rotation_formula[0].text;
+    bool tracked = track_is_given(&head->translation) || track_is_given(&head->rotation);
     TRY(body_create(load->shape, sequence, load->mesh, rest, &load->assets->strands[body->first],
                     body->section_count, &options, error));
     warn_apart(load->shape, load->messages);

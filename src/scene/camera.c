@@ -7,13 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-static void auto_or_keyed(const Keyframes *keys, const AutoVec3 *param, const float automatic[3],
+static void auto_or_track(const Track *track, const AutoVec3 *param, const float automatic[3],
                           double time, float *value)
 {
-    if (keys->count)
-        keyframes_evaluate(keys, time, value);
-    else
-        memcpy(value, param->automatic ? automatic : param->value, sizeof(vec3));
+    track_evaluate_or(track, param->automatic ? automatic : param->value, time, value);
 }
 
 // Chooses an up vector (unit) that is not parallel to `direction` (unit): `wanted`, if possible.
@@ -109,9 +106,9 @@ void camera_view(View *view, const Scene *scene, const Framing *framing, int fra
     double time = schedule_frame_time(&scene->run, frame);
     vec3 target = {0};
     float fov_deg = scene->run.fov;
-    auto_or_keyed(&scene->target, &scene->run.target, framing->target, time, target);
-    auto_or_keyed(&scene->eye, &scene->run.eye, framing->eye, time, view->eye);
-    if (scene->fov.count) keyframes_evaluate(&scene->fov, time, &fov_deg);
+    auto_or_track(&scene->target, &scene->run.target, framing->target, time, target);
+    auto_or_track(&scene->eye, &scene->run.eye, framing->eye, time, view->eye);
+    if (track_is_given(&scene->fov)) track_evaluate(&scene->fov, time, &fov_deg);
     turn_about(scene, frame, target, view->eye);
     look_at(view, target, scene->run.camera_up);
     find_depths(view, &framing->all);
@@ -149,7 +146,7 @@ void camera_lights(Light lights[SCENE_MAX_LIGHTS], const Scene *scene, const Fra
     vec3 target = {0};
     memcpy(lights, scene->lights, sizeof scene->lights);
     if (!scene->run.turn_lights) return;
-    auto_or_keyed(&scene->target, &scene->run.target, framing->target,
+    auto_or_track(&scene->target, &scene->run.target, framing->target,
                   schedule_frame_time(&scene->run, frame), target);
     for (uint32_t i = 0; i < scene->light_count; ++i) {
         turn(scene, frame, lights[i].direction);

@@ -17,7 +17,7 @@ typedef struct View {
     float near_distance, far_distance; // m, > 0
 } View;
 
-// The camera of frame `frame` (0 .. run.frames - 1) for an image of run.size. Keyframes of eye,
+// The camera of frame `frame` (0 .. run.frames - 1) for an image of run.size. Tracks of eye,
 // target and fov override the parameters; automatic values come from the framing. The turntable
 // turns the eye by camera_turntable_deg about the axis through the target along camera_up,
 // counter-clockwise as seen from its tip. Any finite input gives a finite camera: if the eye is at

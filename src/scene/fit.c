@@ -10,7 +10,8 @@
 
 bool fit_is_free(const Scene *scene)
 {
-    return scene->run.eye.automatic && !scene->eye.count && !scene->target.count;
+    return scene->run.eye.automatic && !track_is_given(&scene->eye) &&
+           !track_is_given(&scene->target);
 }
 
 // Sets a pair of opposite sides of the view: right and left (`side` 0) or top and bottom (1).

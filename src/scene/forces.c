@@ -9,7 +9,7 @@
 static bool blows(const Scene *scene)
 {
     const float *w = scene->run.wind;
-    return scene->wind.count > 0 || w[0] != 0 || w[1] != 0 || w[2] != 0;
+    return track_is_given(&scene->wind) || w[0] != 0 || w[1] != 0 || w[2] != 0;
 }
 
 // Three sines whose common period is 100 times the first one's, run.gust_period, so that gusts do
@@ -57,18 +57,16 @@ static void spread_wind(Forces *forces, const vec3 main, float spread_deg)
 void forces_evaluate(Forces *forces, const Scene *scene, double time)
 {
     *forces = (Forces){0};
-    memcpy(forces->gravity, scene->run.gravity, sizeof forces->gravity);
-    if (scene->gravity.count) keyframes_evaluate(&scene->gravity, time, forces->gravity);
+    track_evaluate_or(&scene->gravity, scene->run.gravity, time, forces->gravity);
     if (!blows(scene)) return;
     vec3 main = {0};
-    memcpy(main, scene->run.wind, sizeof main);
-    if (scene->wind.count) keyframes_evaluate(&scene->wind, time, main);
+    track_evaluate_or(&scene->wind, scene->run.wind, time, main);
     glm_vec3_scale(main, (float)(1 + (double)scene->run.gust * gust_at(&scene->run, time)), main);
     if (glm_vec3_norm2(main) > 0) spread_wind(forces, main, scene->run.wind_spread);
 }
 
 bool forces_are_constant(const Scene *scene)
 {
-    return scene->gravity.count < 2 && scene->wind.count < 2 &&
+    return track_is_still(&scene->gravity) && track_is_still(&scene->wind) &&
            (!blows(scene) || scene->run.gust == 0);
 }

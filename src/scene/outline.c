@@ -97,20 +97,11 @@ typedef struct Moment {
     vec3 translation, gravity, wind;
 } Moment;
 
-static void keyed_or_constant(const Keyframes *keys, double time, const float constant[3],
-                              float *value)
-{
-    if (keys->count)
-        keyframes_evaluate(keys, time, value);
-    else
-        memcpy(value, constant, sizeof(vec3));
-}
-
 static void moment_at(Moment *moment, const Scene *scene, const SceneBody *body, double time)
 {
     rigid_track_evaluate(&body->head, time, moment->rotation, moment->translation);
-    keyed_or_constant(&scene->gravity, time, scene->run.gravity, moment->gravity);
-    keyed_or_constant(&scene->wind, time, scene->run.wind, moment->wind);
+    track_evaluate_or(&scene->gravity, scene->run.gravity, time, moment->gravity);
+    track_evaluate_or(&scene->wind, scene->run.wind, time, moment->wind);
 }
 
 static void carry(const Moment *moment, const float point[3], float carried[3])
@@ -242,7 +233,8 @@ static void add_body(Framing *framing, const Scene *scene, const SceneBody *body
     const Section *sections = &scene->sections[body->first];
     for (uint32_t i = 0; i < body->section_count; ++i) add_style(&style, &strands[i]);
     if (mesh) outline_add(&shape, (const float(*)[3])mesh->position, mesh->vertex_count);
-    bool moves = !rigid_track_is_still(&body->head) || scene->gravity.count || scene->wind.count;
+    bool moves = !rigid_track_is_still(&body->head) || !track_is_still(&scene->gravity) ||
+                 !track_is_still(&scene->wind);
     double duration = schedule_frame_time(&scene->run, scene->run.frames);
     uint32_t times = moves ? TIMES : 1;
     for (uint32_t t = 0; t < times; ++t) {
@@ -288,8 +280,17 @@ static float distance_to_see(const Outline *outline, const Axes *axes, const flo
 
 static float narrowest_fov(const Scene *scene)
 {
-    float fov = scene->fov.count ? scene->fov.value[0] : scene->run.fov;
-    for (uint32_t i = 1; i < scene->fov.count; ++i) fov = fminf(fov, scene->fov.value[i]);
+    const Track *track = &scene->fov;
+    if (!track_is_given(track)) return glm_rad(scene->run.fov);
+    float fov = 180, value = 0;
+    int frames = scene->run.frames;
+    for (int i = 0; i < track_sample_count(track, frames); ++i) {
+        track_evaluate(
+            track,
+            track_sample_time(track, i, frames, schedule_frame_time(&scene->run, frames - 1)),
+            &value);
+        fov = fminf(fov, value);
+    }
     return glm_rad(fov);
 }
 
@@ -328,8 +329,8 @@ void outline_frame(Framing *framing, const Scene *scene, const Strands *strands,
     find_outlines(framing, scene, strands, meshes);
     const Outline *outline = outline_shown(framing, scene);
     for (int k = 0; k < 3; ++k) framing->target[k] = 0.5f * (outline->low[k] + outline->high[k]);
-    if (scene->target.count)
-        keyframes_evaluate(&scene->target, 0, framing->target);
+    if (track_is_given(&scene->target))
+        track_evaluate(&scene->target, 0, framing->target);
     else if (!scene->run.target.automatic)
         memcpy(framing->target, scene->run.target.value, sizeof framing->target);
     place_eye(framing, scene);

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double DEGREE = 3.14159265358979323846 / 180;
+const TrackRange RIGID_TRACK_METRES = {-RIGID_TRACK_MAX, RIGID_TRACK_MAX, 1.0};
+const TrackRange RIGID_TRACK_DEGREES = {-RIGID_TRACK_MAX, RIGID_TRACK_MAX,
+                                        3.14159265358979323846 / 180};
 
 // Converts a rotation vector (axis times angle) to a quaternion x, y, z, w.
 static void quaternion_from_vector(const float vector[3], double quaternion[4])
@@ -27,16 +29,6 @@ static void rotate(const double q[4], const float v[3], double rotated[3])
     rotated[0] = x + 2 * (q[3] * cross[0] + q[1] * cross[2] - q[2] * cross[1]);
     rotated[1] = y + 2 * (q[3] * cross[1] + q[2] * cross[0] - q[0] * cross[2]);
     rotated[2] = z + 2 * (q[3] * cross[2] + q[0] * cross[1] - q[1] * cross[0]);
-}
-
-// `formulas` has three elements.
-static void evaluate_formulas(const Formula *formulas, double time, double scale, float value[3])
-{
-    for (int i = 0; i < 3; i++) {
-        double number = formula_evaluate(&formulas[i], time);
-        if (isnan(number)) number = 0;
-        value[i] = (float)(scale * fmin(fmax(number, -RIGID_TRACK_MAX), RIGID_TRACK_MAX));
-    }
 }
 
 // The twist (rotation vector about the origin, rad; velocity of the point at the origin, m) that
@@ -124,12 +116,8 @@ void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4
                           float translation[3])
 {
     float moved[3] = {0}, turned[3] = {0};
-    if (track->translation.count > 0) keyframes_evaluate(&track->translation, time, moved);
-    if (track->rotation.count > 0) keyframes_evaluate(&track->rotation, time, turned);
-    if (track->translation_formula[0].text)
-        evaluate_formulas(track->translation_formula, time, 1, moved);
-    if (track->rotation_formula[0].text)
-        evaluate_formulas(track->rotation_formula, time, DEGREE, turned);
+    if (track_is_given(&track->translation)) track_evaluate(&track->translation, time, moved);
+    if (track_is_given(&track->rotation)) track_evaluate(&track->rotation, time, turned);
     double quaternion[4], pivot[3];
     quaternion_from_vector(turned, quaternion);
     rotate(quaternion, track->pivot, pivot);
@@ -142,37 +130,19 @@ void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4
 
 bool rigid_track_is_still(const RigidTrack *track)
 {
-    return track->translation.count < 2 && track->rotation.count < 2 &&
-           !track->translation_formula[0].text && !track->rotation_formula[0].text &&
+    return track_is_still(&track->translation) && track_is_still(&track->rotation) &&
            !track->samples;
-}
-
-// `formulas` has three elements or none.
-static Result check_formulas(const Formula *formulas, const char *name, double time, Error *error)
-{
-    for (int i = 0; i < 3 && formulas[i].text; i++) {
-        double number = formula_evaluate(&formulas[i], time);
-        if (!(fabs(number) <= RIGID_TRACK_MAX))
-            return error_set(error, RESULT_BAD_INPUT,
-                             "%s[%d]: '%.100s' is %g at t = %.9g, expected -%g to %g", name, i,
-                             formulas[i].text, number, time, RIGID_TRACK_MAX, RIGID_TRACK_MAX);
-    }
-    return RESULT_OK;
 }
 
 Result rigid_track_check(const RigidTrack *track, double time, Error *error)
 {
-    TRY(check_formulas(track->translation_formula, "translate", time, error));
-    return check_formulas(track->rotation_formula, "rotate", time, error);
+    TRY(track_check(&track->translation, "translate", time, error));
+    return track_check(&track->rotation, "rotate", time, error);
 }
 
 void rigid_track_destroy(RigidTrack *track)
 {
-    keyframes_destroy(&track->translation);
-    keyframes_destroy(&track->rotation);
-    for (int i = 0; i < 3; i++) {
-        formula_destroy(&track->translation_formula[i]);
-        formula_destroy(&track->rotation_formula[i]);
-    }
+    track_destroy(&track->translation);
+    track_destroy(&track->rotation);
     *track = (RigidTrack){0};
 }

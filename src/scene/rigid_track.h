@@ -2,10 +2,9 @@
 // The motion of a rigid body (the head) over time: by keyframes, formulas or samples.
 #pragma once
 
-#include "base/formula.h"
 #include "mesh/mesh_binding.h"
 #include "mesh/sample_span.h"
-#include "scene/keyframes.h"
+#include "scene/track.h"
 
 // A motion given by samples at even times. Between samples it follows the smooth curve
 // (sample_span) of the screw motions from a sample to its neighbours. So a body that turns evenly
@@ -22,29 +21,28 @@ RigidMotion rigid_samples_evaluate(const RigidSamples *samples, double time);
 // written. A track without keys and formulas does nothing; translation and rotation each have
 // either keys or formulas.
 typedef struct RigidTrack {
-    Keyframes translation;          // width 3, m
-    Keyframes rotation;             // width 3, rad
-    Formula translation_formula[3]; // m; all three or none
-    Formula rotation_formula[3];    // degrees
-    float pivot[3];                 // m, point that rotations leave in place
-    const RigidSamples *samples;    // applied before the rest of the track; not owned; NULL if
-                                    // there are none
+    Track translation;           // width 3, m
+    Track rotation;              // width 3, rad; formulas in degrees
+    float pivot[3];              // m, point that rotations leave in place
+    const RigidSamples *samples; // applied before the rest of the track; not owned; NULL if there
+                                 // are none
 } RigidTrack;
 
-// Bound of translations (m) and of a formula's rotation (degrees); values beyond it are clamped.
 #define RIGID_TRACK_MAX 1e6
 
+// The ranges of formulas: up to RIGID_TRACK_MAX in either direction.
+extern const TrackRange RIGID_TRACK_METRES, RIGID_TRACK_DEGREES;
+
 // The motion at `time` (s): x' = R x + translation moves a point from its place without the track
-// to its place at that time. `rotation` is the unit quaternion x, y, z, w of R (cglm's order). A
-// formula's value is clamped to RIGID_TRACK_MAX; NaN counts as 0.
+// to its place at that time. `rotation` is the unit quaternion x, y, z, w of R (cglm's order).
 void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4],
                           float translation[3]);
 
 // Whether the body stays at one place.
 bool rigid_track_is_still(const RigidTrack *track);
 
-// Checks that all formulas are finite and within RIGID_TRACK_MAX at `time`; RESULT_BAD_INPUT with
-// the formula's name.
+// Checks that all formulas are finite and in their range at `time`; RESULT_BAD_INPUT with the
+// formula's name.
 Result rigid_track_check(const RigidTrack *track, double time, Error *error);
 
 // A zeroed track may be destroyed.

@@ -14,9 +14,9 @@
 #include "base/params.h"
 #include "scene/body.h"
 #include "scene/colliders.h"
-#include "scene/keyframes.h"
 #include "scene/rigid_track.h"
 #include "scene/section_tracks.h"
+#include "scene/track.h"
 
 #include <jansson.h>
 #include <stdint.h>
@@ -104,10 +104,10 @@ typedef struct Scene {
     uint32_t body_count;
     Section *sections; // [section_count], owned; body by body
     uint32_t section_count;
-    Keyframes gravity;              // width 3, m/s2; without keys, run.gravity
-    Keyframes wind;                 // width 3, m/s; without keys, run.wind
-    Keyframes eye, target;          // width 3, m; without keys, run.eye and run.target
-    Keyframes fov;                  // width 1, deg; without keys, run.fov
+    Track gravity;                  // width 3, m/s2; if not given, run.gravity
+    Track wind;                     // width 3, m/s; if not given, run.wind
+    Track eye, target;              // width 3, m; if not given, run.eye and run.target
+    Track fov;                      // width 1, deg; if not given, run.fov
     Light lights[SCENE_MAX_LIGHTS]; // those of the look if the user gives none
     bool own_lights;                // the user gives lights, or an empty list
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only

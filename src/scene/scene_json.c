@@ -322,21 +322,21 @@ static Result read_bodies(Scene *scene, const Document *document, Error *error)
     return result;
 }
 
-// Reads keyframes if the force `name` (gravity or wind) is an object.
-static Result read_force(Keyframes *keys, const char *name, const Document *document, Error *error)
+// Reads the track if the force `name` (gravity or wind) is an object.
+static Result read_force(Track *track, const char *name, const Document *document, Error *error)
 {
     const json_t *value = json_object_get(document->json, name);
     if (!json_is_object(value)) return RESULT_OK;
     JsonPlace place = {.parent = &document->root, .key = name};
-    return scene_tracks_read_keys(keys, params_find(name), &place, value, error);
+    return scene_tracks_read_force(track, params_find(name), &place, value, error);
 }
 
-static Result refuse_both(const Document *document, const char *name, const Keyframes *keys,
+static Result refuse_both(const Document *document, const char *name, const Track *track,
                           Error *error)
 {
-    if (keys->count == 0 || !json_object_get(document->json, name)) return RESULT_OK;
+    if (!track_is_given(track) || !json_object_get(document->json, name)) return RESULT_OK;
     JsonPlace place = {.parent = &document->root, .key = name};
-    return json_fail(&place, error, "given here and by the keys of 'camera'");
+    return json_fail(&place, error, "given here and by 'camera'");
 }
 
 static Result read_parts(Scene *scene, const Document *document, Error *error)

@@ -219,20 +219,32 @@ static json_t *track(json_t *members, json_t *others)
     return finish(closed(properties), good);
 }
 
+// The schema of one formula of time.
+static json_t *formula(void)
+{
+    return json_pack("{s:[s, s]}", "type", "number", "string");
+}
+
+// Either "keys" or "formula".
+static void put_alternatives(json_t *track, bool *good)
+{
+    put(track, "oneOf",
+        json_pack("[{s:[s]}, {s:[s], s:{s:b, s:b}}]", "required", "keys", "required", "formula",
+                  "properties", "keys", 0, "interpolation", 0),
+        good);
+}
+
 // The schema of a track for a section's number or color.
 static json_t *number_track(const ParamInfo *info)
 {
     bool color = section_tracks_is_color(info), good = true;
-    json_t *formula = color ? NULL : json_pack("{s:{s:s}}", "formula", "type", "string");
     json_t *value = color ? reference("colorValue") : real(info->minimum, info->maximum);
-    json_t *result = track(json_pack("{s:o}", "value", value), formula);
+    json_t *result = track(json_pack("{s:o}", "value", value),
+                           color ? NULL : json_pack("{s:o}", "formula", formula()));
     if (color)
         put(result, "required", json_pack("[s]", "keys"), &good);
     else
-        put(result, "oneOf",
-            json_pack("[{s:[s]}, {s:[s], s:{s:b, s:b}}]", "required", "keys", "required", "formula",
-                      "properties", "keys", 0, "interpolation", 0),
-            &good);
+        put_alternatives(result, &good);
     return finish(result, good);
 }
 
@@ -279,9 +291,10 @@ static json_t *force_track(void)
 {
     const ParamInfo *wind = params_find("wind");
     json_t *result =
-        track(json_pack("{s:o}", "value", vector(real(wind->minimum, wind->maximum), 3)), NULL);
+        track(json_pack("{s:o}", "value", vector(real(wind->minimum, wind->maximum), 3)),
+              json_pack("{s:o}", "formula", vector(formula(), 3)));
     bool good = result;
-    put(result, "required", json_pack("[s]", "keys"), &good);
+    put_alternatives(result, &good);
     return finish(result, good);
 }
 
@@ -292,16 +305,20 @@ static json_t *camera_track(void)
         track(json_pack("{s:o, s:o, s:o}", "eye", vector(real(eye->minimum, eye->maximum), 3),
                         "target", vector(real(eye->minimum, eye->maximum), 3), "fov",
                         real(fov->minimum, fov->maximum)),
-              NULL);
+              json_pack("{s:o, s:o, s:o}", "eye", vector(formula(), 3), "target",
+                        vector(formula(), 3), "fov", formula()));
     bool good = result;
-    put(result, "required", json_pack("[s]", "keys"), &good);
+    put(result, "anyOf",
+        json_pack("[{s:[s]}, {s:[s]}, {s:[s]}, {s:[s]}]", "required", "keys", "required", "eye",
+                  "required", "target", "required", "fov"),
+        &good);
     return finish(result, good);
 }
 
 // The schema of the head's track: keys, or formulas of time.
 static json_t *head_track(void)
 {
-    json_t *formulas = vector(json_pack("{s:[s, s]}", "type", "number", "string"), 3);
+    json_t *formulas = vector(formula(), 3);
     json_t *result = track(json_pack("{s:o, s:o}", "translate", offsets(), "rotate", offsets()),
                            json_pack("{s:o, s:O, s:O}", "pivot", offsets(), "translate", formulas,
                                      "rotate", formulas));

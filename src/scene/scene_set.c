@@ -5,19 +5,19 @@
 
 enum { TURN_SECONDS = 6, TURN_FPS = 30 };
 
-// A flag also replaces the keyframes that the scene file gives for the parameter.
-static void drop_keyframes(Scene *scene, const char *name)
+// A flag also replaces the keys or formulas that the scene file gives for the parameter.
+static void drop_track(Scene *scene, const char *name)
 {
     const struct {
         const char *name;
-        Keyframes *keys;
+        Track *track;
     } tracks[] = {{"gravity", &scene->gravity},
                   {"wind", &scene->wind},
                   {"eye", &scene->eye},
                   {"target", &scene->target},
                   {"fov", &scene->fov}};
     for (size_t i = 0; i < sizeof tracks / sizeof tracks[0]; i++) {
-        if (strcmp(name, tracks[i].name) == 0) keyframes_destroy(tracks[i].keys);
+        if (strcmp(name, tracks[i].name) == 0) track_destroy(tracks[i].track);
     }
 }
 
@@ -25,7 +25,7 @@ static void drop_keyframes(Scene *scene, const char *name)
 static Result set_run(Scene *scene, const ParamInfo *info, const char *text, Error *error)
 {
     TRY(params_parse(info, &scene->run, text, error));
-    drop_keyframes(scene, info->name);
+    drop_track(scene, info->name);
     scene->origin[info - PARAM_TABLE] = ORIGIN_FLAG;
     return RESULT_OK;
 }

@@ -12,18 +12,16 @@ const char *const INTERPOLATION_WORDS[] = {
     [INTERPOLATION_SMOOTH] = "smooth", [INTERPOLATION_LINEAR] = "linear", NULL};
 const char *const LIGHT_KIND_WORDS[] = {
     [LIGHT_DIRECTIONAL] = "directional", [LIGHT_POINT] = "point", [LIGHT_SPOT] = "spot", NULL};
-const double DEGREE = 3.14159265358979323846 / 180.0;
 
 enum { MEMBERS_MAX = 3 };
 
-// A member that the keys of a track may have, and where its values are stored.
+// A track in a scene file: a member of its keys, and the key of its formulas.
 typedef struct Member {
-    const char *name;
-    Keyframes *keys;
+    const char *name, *formula; // `formula` is NULL if there are none
+    Track *track;
     uint32_t width;
-    double minimum, maximum; // in the unit of the file
-    double scale;            // from the file's unit to the struct's
-    bool color;              // may also be the text of a color
+    TrackRange range;
+    bool color; // may also be the text of a color
 } Member;
 
 static Result read_member(const Member *member, const JsonPlace *parent, const json_t *value,
@@ -35,17 +33,17 @@ static Result read_member(const Member *member, const JsonPlace *parent, const j
     if (member->color && json_is_string(value)) {
         SectionParams holder = {0};
         TRY(scene_param_read(params_find("color"), &holder, NULL, &place, value, error));
-        return keyframes_append(member->keys, time, holder.color, 3, error);
+        return keyframes_append(&member->track->keys, time, holder.color, 3, error);
     }
     TRY(member->width == 1
-            ? json_read_number(&place, value, member->minimum, member->maximum, "a number", &number,
-                               error)
-            : json_read_vector(&place, value, member->width, member->minimum, member->maximum,
-                               "an array of three numbers", numbers, error));
+            ? json_read_number(&place, value, member->range.minimum, member->range.maximum,
+                               "a number", &number, error)
+            : json_read_vector(&place, value, member->width, member->range.minimum,
+                               member->range.maximum, "an array of three numbers", numbers, error));
     if (member->width == 1) numbers[0] = (float)number;
     for (uint32_t i = 0; i < member->width; i++)
-        numbers[i] = (float)((double)numbers[i] * member->scale);
-    return keyframes_append(member->keys, time, numbers, member->width, error);
+        numbers[i] = (float)((double)numbers[i] * member->range.scale);
+    return keyframes_append(&member->track->keys, time, numbers, member->width, error);
 }
 
 // Reads one key: its time, which must be later than `*time` and replaces it, and at least one
@@ -87,9 +85,9 @@ static Result read_interpolation(const JsonPlace *parent, const json_t *track, I
     return result;
 }
 
-// Reads "keys" and "interpolation" of a track. The caller reads the other members.
-static Result read_track(const Member *members, size_t count, const JsonPlace *place,
-                         const json_t *track, Error *error)
+// Reads "keys" and "interpolation".
+static Result read_keys(const Member *members, size_t count, const JsonPlace *place,
+                        const json_t *track, Error *error)
 {
     Interpolation interpolation = INTERPOLATION_SMOOTH;
     TRY(read_interpolation(place, track, &interpolation, error));
@@ -103,26 +101,86 @@ static Result read_track(const Member *members, size_t count, const JsonPlace *p
         JsonPlace key_place = {.parent = &keys_place, .index = i};
         TRY(read_key(members, count, &key_place, json_array_get(keys, i), &time, error));
     }
-    for (size_t i = 0; i < count; i++) members[i].keys->interpolation = interpolation;
+    for (size_t i = 0; i < count; i++) members[i].track->keys.interpolation = interpolation;
     return RESULT_OK;
 }
 
-Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
-                              const json_t *value, Error *error)
+// Reads one formula of time; a number is a constant formula.
+static Result read_formula(const Member *member, uint32_t component, const JsonPlace *place,
+                           const json_t *value, Error *error)
 {
-    static const char *const NAMES[] = {"keys", "interpolation", NULL};
-    Member member = {"value", keys, 3, info->minimum, info->maximum, 1.0, false};
-    TRY(json_check_object(place, value, NAMES, error));
-    return read_track(&member, 1, place, value, error);
+    char number[32];
+    Error why;
+    snprintf(number, sizeof number, "%.9g", json_number_value(value));
+    if (!json_is_number(value) && !json_is_string(value))
+        return json_refuse(place, value, "a number or a formula of t", error);
+    if (track_set_formula(member->track, component,
+                          json_is_string(value) ? json_string_value(value) : number, &member->range,
+                          &why) == RESULT_OK)
+        return RESULT_OK;
+    return json_fail(place, error, "%s", why.text);
 }
 
-Result scene_tracks_read_numbers(Keyframes *keys, const ParamInfo *info, bool color,
-                                 const JsonPlace *place, const json_t *value, Error *error)
+// Reads a formula for each component, if there are any.
+static Result read_formulas(const Member *member, const JsonPlace *parent, const json_t *object,
+                            Error *error)
 {
-    static const char *const NAMES[] = {"keys", "interpolation", NULL};
-    Member member = {"value", keys, color ? 3 : 1, info->minimum, info->maximum, 1.0, color};
-    TRY(json_check_object(place, value, NAMES, error));
-    return read_track(&member, 1, place, value, error);
+    const json_t *value = member->formula ? json_object_get(object, member->formula) : NULL;
+    JsonPlace place = {.parent = parent, .key = member->formula};
+    if (!value) return RESULT_OK;
+    if (member->track->keys.count > 0) return json_fail(&place, error, "given here and by 'keys'");
+    if (member->width == 1) return read_formula(member, 0, &place, value, error);
+    if (!json_is_array(value) || json_array_size(value) != member->width)
+        return json_refuse(&place, value, "an array of three numbers or formulas of t", error);
+    for (uint32_t i = 0; i < member->width; i++) {
+        JsonPlace element = {.parent = &place, .index = i};
+        TRY(read_formula(member, i, &element, json_array_get(value, i), error));
+    }
+    return RESULT_OK;
+}
+
+// Reads an object with "keys" and "interpolation", or with formulas, or with both for different
+// members. `other` is a key that the caller reads, or NULL.
+static Result read_tracks(const Member *members, size_t count, const char *other,
+                          const JsonPlace *place, const json_t *object, Error *error)
+{
+    const char *names[MEMBERS_MAX + 4] = {"keys", "interpolation"};
+    size_t named = 2;
+    bool by_formula = false;
+    if (other) names[named++] = other;
+    for (size_t i = 0; i < count; i++) {
+        if (!members[i].formula) continue;
+        names[named++] = members[i].formula;
+        by_formula = by_formula || json_object_get(object, members[i].formula);
+    }
+    TRY(json_check_object(place, object, names, error));
+    bool by_keys = json_object_get(object, "keys") || json_object_get(object, "interpolation");
+    if (by_keys || !by_formula) TRY(read_keys(members, count, place, object, error));
+    for (size_t i = 0; i < count; i++) TRY(read_formulas(&members[i], place, object, error));
+    return RESULT_OK;
+}
+
+static TrackRange range_of(const ParamInfo *info)
+{
+    return (TrackRange){info->minimum, info->maximum, 1.0};
+}
+
+Result scene_tracks_read_force(Track *track, const ParamInfo *info, const JsonPlace *place,
+                               const json_t *value, Error *error)
+{
+    Member member = {"value", "formula", track, 3, range_of(info), false};
+    return read_tracks(&member, 1, NULL, place, value, error);
+}
+
+Result scene_tracks_read_number(Track *track, const ParamInfo *info, bool color,
+                                const JsonPlace *place, const json_t *value, Error *error)
+{
+    Member member = {"value",       color ? NULL : "formula", track,
+                     color ? 3 : 1, range_of(info),           color};
+    JsonPlace formula = {.parent = place, .key = "formula"};
+    if (color && json_object_get(value, "formula"))
+        return json_fail(&formula, error, "a color has no formula: expected 'keys'");
+    return read_tracks(&member, 1, NULL, place, value, error);
 }
 
 // Reads a point or a direction; keeps the present value if the member is missing.
@@ -137,68 +195,27 @@ static Result read_vector(float to[3], const JsonPlace *parent, const json_t *ob
                             "an array of three numbers", to, error);
 }
 
-// Reads three formulas of time; a number is a constant formula.
-static Result read_formulas(Formula formulas[3], const char *name, const Keyframes *keys,
-                            const JsonPlace *parent, const json_t *object, Error *error)
-{
-    const json_t *array = json_object_get(object, name);
-    if (!array) return RESULT_OK;
-    JsonPlace place = {.parent = parent, .key = name};
-    if (keys->count > 0) return json_fail(&place, error, "given here and by 'keys'");
-    if (!json_is_array(array) || json_array_size(array) != 3)
-        return json_refuse(&place, array, "an array of three numbers or formulas of t", error);
-    for (size_t i = 0; i < 3; i++) {
-        const json_t *value = json_array_get(array, i);
-        JsonPlace element = {.parent = &place, .index = i};
-        char number[32];
-        snprintf(number, sizeof number, "%.9g", json_number_value(value));
-        if (!json_is_number(value) && !json_is_string(value))
-            return json_refuse(&element, value, "a number or a formula of t", error);
-        Error why;
-        Result result = formula_create(
-            &formulas[i], json_is_string(value) ? json_string_value(value) : number, &why);
-        if (result != RESULT_OK) return json_fail(&element, error, "%s", why.text);
-    }
-    return RESULT_OK;
-}
-
-static Result read_head_keys(RigidTrack *head, const JsonPlace *place, const json_t *value,
-                             Error *error)
-{
-    const Member members[] = {
-        {"translate", &head->translation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, 1.0, false},
-        {"rotate", &head->rotation, 3, -SCENE_OFFSET_MAX, SCENE_OFFSET_MAX, DEGREE, false},
-    };
-    bool by_formula = json_object_get(value, "translate") || json_object_get(value, "rotate");
-    if (by_formula && !json_object_get(value, "keys")) return RESULT_OK;
-    return read_track(members, 2, place, value, error);
-}
-
 Result scene_tracks_read_head(RigidTrack *head, const JsonPlace *place, const json_t *value,
                               Error *error)
 {
-    static const char *const NAMES[] = {"keys",      "interpolation", "pivot",
-                                        "translate", "rotate",        NULL};
-    TRY(json_check_object(place, value, NAMES, error));
-    TRY(read_vector(head->pivot, place, value, "pivot", false, error));
-    TRY(read_head_keys(head, place, value, error));
-    TRY(read_formulas(head->translation_formula, "translate", &head->translation, place, value,
-                      error));
-    return read_formulas(head->rotation_formula, "rotate", &head->rotation, place, value, error);
+    const Member members[] = {
+        {"translate", "translate", &head->translation, 3, RIGID_TRACK_METRES, false},
+        {"rotate", "rotate", &head->rotation, 3, RIGID_TRACK_DEGREES, false},
+    };
+    TRY(read_tracks(members, 2, "pivot", place, value, error));
+    return read_vector(head->pivot, place, value, "pivot", false, error);
 }
 
 Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json_t *value,
                                 Error *error)
 {
-    static const char *const NAMES[] = {"keys", "interpolation", NULL};
-    const ParamInfo *eye = params_find("eye"), *fov = params_find("fov");
+    const TrackRange point = range_of(params_find("eye")), angle = range_of(params_find("fov"));
     const Member members[] = {
-        {"eye", &scene->eye, 3, eye->minimum, eye->maximum, 1.0, false},
-        {"target", &scene->target, 3, eye->minimum, eye->maximum, 1.0, false},
-        {"fov", &scene->fov, 1, fov->minimum, fov->maximum, 1.0, false},
+        {"eye", "eye", &scene->eye, 3, point, false},
+        {"target", "target", &scene->target, 3, point, false},
+        {"fov", "fov", &scene->fov, 1, angle, false},
     };
-    TRY(json_check_object(place, value, NAMES, error));
-    return read_track(members, 3, place, value, error);
+    return read_tracks(members, 3, NULL, place, value, error);
 }
 
 // Reads a unit vector: for a directional light against the direction of travel, for a spot along

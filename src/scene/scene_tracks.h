@@ -23,17 +23,16 @@ Result scene_tracks_read_camera(Scene *scene, const JsonPlace *place, const json
 Result scene_tracks_read_lights(Scene *scene, const JsonPlace *place, const json_t *value,
                                 Error *error);
 
-// Reads {"keys": [{"time": s, "value": [x, y, z]}, ...], "interpolation": "smooth" | "linear"} into
-// `keys`. The values have the range of the constant parameter `info`.
-Result scene_tracks_read_keys(Keyframes *keys, const ParamInfo *info, const JsonPlace *place,
-                              const json_t *value, Error *error);
+// Reads {"keys": [{"time": s, "value": [x, y, z]}, ...], "interpolation": "smooth" | "linear"} or
+// {"formula": [x, y, z]}. The values have the range of the constant parameter `info`.
+Result scene_tracks_read_force(Track *track, const ParamInfo *info, const JsonPlace *place,
+                               const json_t *value, Error *error);
 
-// The same for a number of a section, or for a color: three numbers or the form of a flag.
-Result scene_tracks_read_numbers(Keyframes *keys, const ParamInfo *info, bool color,
-                                 const JsonPlace *place, const json_t *value, Error *error);
+// The same for a number of a section, whose formula is one text, or for a color: three numbers or
+// the form of a flag, without formulas.
+Result scene_tracks_read_number(Track *track, const ParamInfo *info, bool color,
+                                const JsonPlace *place, const json_t *value, Error *error);
 
 // The words of "interpolation" and of a light's "type", by enumerator, terminated by NULL.
 extern const char *const INTERPOLATION_WORDS[];
 extern const char *const LIGHT_KIND_WORDS[];
-
-extern const double DEGREE; // in radians

@@ -34,95 +34,108 @@ static json_t *write_value(const Keyframes *keys, uint32_t key, double scale)
                             : scene_param_write_floats(scaled, keys->width);
 }
 
-// A track that becomes the member `name` of keys, in the unit of the file.
-typedef struct Track {
-    const char *name;
-    const Keyframes *keys;
-    double scale;
+// A track, the member `name` of keys, the key of its formulas.
+typedef struct Written {
+    const char *name, *formula;
+    const Track *track;
+    double scale;  // to the unit of the file
     uint32_t next; // the first key not yet written
-} Track;
+} Written;
 
 // The earliest time of the keys that are not yet written; infinity if there are none.
-static double next_time(const Track *tracks, size_t count)
+static double next_time(const Written *tracks, size_t count)
 {
     double time = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        const Track *track = &tracks[i];
-        if (track->next < track->keys->count) time = fmin(time, track->keys->time[track->next]);
+        const Keyframes *keys = &tracks[i].track->keys;
+        if (tracks[i].next < keys->count) time = fmin(time, keys->time[tracks[i].next]);
     }
     return time;
 }
 
-// {"keys": [...], "interpolation": ...} with each time once. NULL if no track has keys or if memory
-// is short.
-static json_t *write_tracks(Track *tracks, size_t count)
+// Puts "keys" and "interpolation" into the object, with each time once, if there are keys.
+static bool write_keys(json_t *object, Written *tracks, size_t count)
 {
-    json_t *array = json_array(), *object = json_object();
+    json_t *array = json_array();
     Interpolation interpolation = INTERPOLATION_SMOOTH;
     bool good = true;
+    if (isinf(next_time(tracks, count))) {
+        json_decref(array);
+        return true;
+    }
     for (double time; isfinite(time = next_time(tracks, count));) {
         json_t *key = json_object();
         good = put(key, "time", json_real(time)) && good;
         for (size_t i = 0; i < count; i++) {
-            Track *track = &tracks[i];
-            if (track->next == track->keys->count || track->keys->time[track->next] != time)
-                continue;
-            interpolation = track->keys->interpolation;
-            good =
-                put(key, track->name, write_value(track->keys, track->next, track->scale)) && good;
+            Written *track = &tracks[i];
+            const Keyframes *keys = &track->track->keys;
+            if (track->next == keys->count || keys->time[track->next] != time) continue;
+            interpolation = keys->interpolation;
+            good = put(key, track->name, write_value(keys, track->next, track->scale)) && good;
             track->next++;
         }
         good = json_array_append_new(array, key) == 0 && good;
     }
     good = put(object, "keys", array) && good;
-    good = put(object, "interpolation", json_string(INTERPOLATION_WORDS[interpolation])) && good;
+    return put(object, "interpolation", json_string(INTERPOLATION_WORDS[interpolation])) && good;
+}
+
+// One text, or an array of three.
+static json_t *write_formulas(const Track *track)
+{
+    if (!track->formula[1].text) return scene_param_write_text(track->formula[0].text);
+    json_t *array = json_array();
+    bool good = true;
+    for (int i = 0; i < 3; i++)
+        good = json_array_append_new(array, scene_param_write_text(track->formula[i].text)) == 0 &&
+               good;
+    return finish(array, good);
+}
+
+// An object that scene_tracks.c reads. An empty object if no track is given, NULL if memory is
+// short.
+static json_t *write_tracks(Written *tracks, size_t count)
+{
+    json_t *object = json_object();
+    bool good = write_keys(object, tracks, count);
+    for (size_t i = 0; i < count; i++)
+        if (tracks[i].track->formula[0].text)
+            good = put(object, tracks[i].formula, write_formulas(tracks[i].track)) && good;
     return finish(object, good);
 }
 
-static bool write_force(json_t *object, const char *name, const Keyframes *keys)
+static bool write_force(json_t *object, const char *name, const Track *track)
 {
-    Track track = {.name = "value", .keys = keys, .scale = 1.0};
-    return keys->count == 0 || put(object, name, write_tracks(&track, 1));
+    Written written = {.name = "value", .formula = "formula", .track = track, .scale = 1.0};
+    return !track_is_given(track) || put(object, name, write_tracks(&written, 1));
 }
 
 static bool write_camera(json_t *object, const Scene *scene)
 {
-    Track tracks[] = {{.name = "eye", .keys = &scene->eye, .scale = 1.0},
-                      {.name = "target", .keys = &scene->target, .scale = 1.0},
-                      {.name = "fov", .keys = &scene->fov, .scale = 1.0}};
-    if (isinf(next_time(tracks, 3))) return true;
-    bool good = put(object, "camera", write_tracks(tracks, 3));
-    // A scene file has either the constant or the keyframes.
+    Written tracks[] = {{.name = "eye", .track = &scene->eye, .scale = 1.0},
+                        {.name = "target", .track = &scene->target, .scale = 1.0},
+                        {.name = "fov", .track = &scene->fov, .scale = 1.0}};
+    bool given = false;
     for (size_t i = 0; i < 3; i++) {
-        if (tracks[i].keys->count > 0) json_object_del(object, tracks[i].name);
+        tracks[i].formula = tracks[i].name;
+        if (!track_is_given(tracks[i].track)) continue;
+        given = true;
+        // A scene file has either the constant or the track.
+        json_object_del(object, tracks[i].name);
     }
-    return good;
+    return !given || put(object, "camera", write_tracks(tracks, 3));
 }
 
-// `formulas` has three elements.
-static json_t *write_formulas(const Formula *formulas)
+static bool write_head(json_t *object, const RigidTrack *head)
 {
-    json_t *array = json_array();
-    bool good = true;
-    for (int i = 0; i < 3; i++)
-        good = json_array_append_new(array, scene_param_write_text(formulas[i].text)) == 0 && good;
-    return finish(array, good);
-}
-
-static bool write_head(json_t *object, const RigidTrack *track)
-{
-    Track tracks[] = {
-        {.name = "translate", .keys = &track->translation, .scale = 1.0},
-        {.name = "rotate", .keys = &track->rotation, .scale = 1.0 / DEGREE},
+    Written tracks[] = {
+        {"translate", "translate", &head->translation, 1.0, 0},
+        {"rotate", "rotate", &head->rotation, 1.0 / RIGID_TRACK_DEGREES.scale, 0},
     };
-    bool keyed = !isinf(next_time(tracks, 2)), moved = track->translation_formula[0].text,
-         turned = track->rotation_formula[0].text;
-    if (!keyed && !moved && !turned) return true;
-    json_t *head = keyed ? write_tracks(tracks, 2) : json_object();
-    bool good = put(head, "pivot", scene_param_write_floats(track->pivot, 3));
-    if (moved) good = put(head, "translate", write_formulas(track->translation_formula)) && good;
-    if (turned) good = put(head, "rotate", write_formulas(track->rotation_formula)) && good;
-    return put(object, "head", head) && good;
+    if (!track_is_given(&head->translation) && !track_is_given(&head->rotation)) return true;
+    json_t *track = write_tracks(tracks, 2);
+    bool good = put(track, "pivot", scene_param_write_floats(head->pivot, 3));
+    return put(object, "head", track) && good;
 }
 
 static json_t *write_light(const Light *light)

@@ -6,16 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void destroy_track(SectionTrack *track)
-{
-    keyframes_destroy(&track->keys);
-    formula_destroy(&track->formula);
-    *track = (SectionTrack){0};
-}
-
 void section_tracks_destroy(SectionTracks *tracks)
 {
-    for (uint32_t i = 0; i < tracks->count; ++i) destroy_track(&tracks->list[i]);
+    for (uint32_t i = 0; i < tracks->count; ++i) track_destroy(&tracks->list[i].track);
     free(tracks->list);
     *tracks = (SectionTracks){0};
 }
@@ -94,26 +87,11 @@ static void put_value(const ParamInfo *info, SectionParams *params, const float 
     }
 }
 
-static float clamped(const ParamInfo *info, double value)
-{
-    bool bounded = info->minimum != 0 || info->maximum != 0;
-    if (isnan(value)) value = info->minimum;
-    return (float)(bounded ? fmin(fmax(value, info->minimum), info->maximum) : value);
-}
-
-static void evaluate(const SectionTrack *track, double time, float value[3])
-{
-    if (track->keys.count)
-        keyframes_evaluate(&track->keys, time, value);
-    else
-        value[0] = clamped(track->info, formula_evaluate(&track->formula, time));
-}
-
 void section_tracks_apply(const SectionTracks *tracks, double time, SectionParams *params)
 {
     for (uint32_t i = 0; i < tracks->count; ++i) {
         float value[3] = {0};
-        evaluate(&tracks->list[i], time, value);
+        track_evaluate(&tracks->list[i].track, time, value);
         put_value(tracks->list[i].info, params, value);
     }
 }
@@ -122,32 +100,21 @@ void section_tracks_greatest(const SectionTracks *tracks, double last, int count
                              SectionParams *params)
 {
     for (uint32_t i = 0; i < tracks->count; ++i) {
-        const SectionTrack *track = &tracks->list[i];
+        const Track *track = &tracks->list[i].track;
+        const ParamInfo *info = tracks->list[i].info;
         float most[3] = {-INFINITY, -INFINITY, -INFINITY}, value[3] = {0};
-        uint32_t width = width_of(track->info);
-        int times = track->keys.count ? (int)track->keys.count : count;
-        for (int t = 0; t < times; ++t) {
-            // The keys are enough, because tracks do not overshoot between keys.
-            double time = track->keys.count ? track->keys.time[t] : last * t / fmax(count - 1, 1);
-            evaluate(track, time, value);
-            for (uint32_t k = 0; k < width; ++k) most[k] = fmaxf(most[k], value[k]);
+        for (int t = 0; t < track_sample_count(track, count); ++t) {
+            track_evaluate(track, track_sample_time(track, t, count, last), value);
+            for (uint32_t k = 0; k < width_of(info); ++k) most[k] = fmaxf(most[k], value[k]);
         }
-        put_value(track->info, params, most);
+        put_value(info, params, most);
     }
 }
 
 Result section_tracks_check(const SectionTracks *tracks, double time, Error *error)
 {
-    for (uint32_t i = 0; i < tracks->count; ++i) {
-        const SectionTrack *track = &tracks->list[i];
-        if (track->keys.count) continue;
-        double value = formula_evaluate(&track->formula, time);
-        if (!(value >= track->info->minimum && value <= track->info->maximum))
-            return error_set(error, RESULT_BAD_INPUT,
-                             "%s: '%.100s' is %g at t = %.9g, expected %.10g to %.10g",
-                             track->info->name, track->formula.text, value, time,
-                             track->info->minimum, track->info->maximum);
-    }
+    for (uint32_t i = 0; i < tracks->count; ++i)
+        TRY(track_check(&tracks->list[i].track, tracks->list[i].info->name, time, error));
     return RESULT_OK;
 }
 
@@ -183,7 +150,7 @@ void section_tracks_drop(SectionTracks *tracks, const ParamInfo *info)
 {
     SectionTrack *track = section_tracks_find(tracks, info);
     if (!track) return;
-    destroy_track(track);
+    track_destroy(&track->track);
     *track = tracks->list[--tracks->count];
 }
 
@@ -205,12 +172,7 @@ Result section_tracks_copy(SectionTracks *to, const SectionTracks *from, Error *
         const SectionTrack *track = &from->list[i];
         SectionTrack *copy = section_tracks_add(to, track->info, error);
         if (!copy) return RESULT_FAILED;
-        if (track->formula.text) TRY(formula_create(&copy->formula, track->formula.text, error));
-        for (uint32_t k = 0; k < track->keys.count; ++k)
-            TRY(keyframes_append(&copy->keys, track->keys.time[k],
-                                 &track->keys.value[(size_t)k * track->keys.width],
-                                 track->keys.width, error));
-        copy->keys.interpolation = track->keys.interpolation;
+        TRY(track_copy(&copy->track, &track->track, error));
     }
     return RESULT_OK;
 }

@@ -2,14 +2,12 @@
 // Section parameters that change over time, by keys or by a formula.
 #pragma once
 
-#include "base/formula.h"
 #include "base/params.h"
-#include "scene/keyframes.h"
+#include "scene/track.h"
 
 typedef struct SectionTrack {
     const ParamInfo *info;
-    Keyframes keys;  // in the parameter's unit: 1 number, or 3 of a colour (sRGB)
-    Formula formula; // used if there are no keys
+    Track track; // in the parameter's unit: 1 number, or 3 of a colour (sRGB)
 } SectionTrack;
 
 // A zeroed struct has no tracks.

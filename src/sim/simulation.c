@@ -151,19 +151,23 @@ static double norm(const float v[3])
                 (double)v[2] * (double)v[2]);
 }
 
-// The keys' largest norm is the track's, because tracks do not overshoot between keys.
-static double greatest(const Keyframes *keys, const float constant[3])
+static double greatest(const RunParams *run, const Track *track, const float constant[3])
 {
-    double most = keys->count ? 0 : norm(constant);
-    for (uint32_t i = 0; i < keys->count; ++i) most = fmax(most, norm(&keys->value[3 * (size_t)i]));
+    if (!track_is_given(track)) return norm(constant);
+    double most = 0, last = schedule_frame_time(run, run->frames);
+    for (int i = 0; i < track_sample_count(track, run->frames + 1); ++i) {
+        float value[3] = {0};
+        track_evaluate(track, track_sample_time(track, i, run->frames + 1, last), value);
+        most = fmax(most, norm(value));
+    }
     return most;
 }
 
 double simulation_acceleration(const Scene *scene, const SectionParams *params)
 {
-    return greatest(&scene->gravity, scene->run.gravity) +
-           (double)params->drag * (1 + (double)scene->run.gust) *
-               greatest(&scene->wind, scene->run.wind);
+    const RunParams *run = &scene->run;
+    return greatest(run, &scene->gravity, run->gravity) +
+           (double)params->drag * (1 + (double)run->gust) * greatest(run, &scene->wind, run->wind);
 }
 
 Result simulation_choose_substeps(int *substeps, const Scene *scene, const Strands *strands,

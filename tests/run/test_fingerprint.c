@@ -2,6 +2,7 @@
 // The fingerprint that identifies the scene of a frame changes with every input and every
 // parameter, unless a documented reason exempts it.
 #include "run/fingerprint.h"
+#include "support/head_formulas.h"
 #include "support/temporary.h"
 
 #include <setjmp.h>
@@ -195,8 +196,7 @@ static void other_maker(World *world)
 }
 static void move_head(World *world)
 {
-    for (int i = 0; i < 3; ++i)
-        world->scene.bodies[0].head.translation_formula[i].text = strdup("t");
+    head_set_translation(&world->scene.bodies[0].head, "t", "t", "t");
 }
 static void dim_light(World *world)
 {

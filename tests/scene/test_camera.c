@@ -56,8 +56,8 @@ static void close_shot(Shot *shot)
     params_destroy_run(&shot->scene.run);
     params_destroy_section(&shot->section.params);
     rigid_track_destroy(&shot->scene.bodies[0].head);
-    keyframes_destroy(&shot->scene.eye);
-    keyframes_destroy(&shot->scene.fov);
+    track_destroy(&shot->scene.eye);
+    track_destroy(&shot->scene.fov);
     strands_destroy(&shot->strands);
 }
 
@@ -137,12 +137,12 @@ static void open_motion(Shot *shot, const Motion *motion)
     shot->section.params.followers.automatic = false; // only the strands
     shot->section.params.followers.value = 0;
     if (motion->aslant != 0) lay_aslant(shot, motion->aslant);
-    Keyframes *track = &shot->scene.bodies[0].head.translation;
+    Keyframes *track = &shot->scene.bodies[0].head.translation.keys;
     keyframes_append(track, 0, STILL, 3, &error);
     if (motion->head_from > 0) keyframes_append(track, (double)motion->head_from, STILL, 3, &error);
     keyframes_append(track, 2, motion->head_to, 3, &error);
     for (int i = 0; i < 3 && motion->fov[0] > 0; ++i)
-        keyframes_append(&shot->scene.fov, i, &motion->fov[i], 1, &error);
+        keyframes_append(&shot->scene.fov.keys, i, &motion->fov[i], 1, &error);
 }
 
 static void hair_stays_in_the_frame_and_fills_it(void **state)
@@ -257,10 +257,42 @@ static void given_eye_and_target_are_taken(void **state)
     assert_memory_equal(view.eye, shot.scene.run.eye.value, sizeof(vec3));
     glm_mat4_mulv3(view.view, (vec3){0, 1, 0}, 1, seen);
     assert_true(fabsf(seen[0]) < 1e-6f && fabsf(seen[1]) < 1e-6f && seen[2] < 0);
-    keyframes_append(&shot.scene.eye, 0, (float[3]){0, 0, 5}, 3, &error);
-    keyframes_append(&shot.scene.eye, 1, (float[3]){0, 0, 9}, 3, &error);
+    keyframes_append(&shot.scene.eye.keys, 0, (float[3]){0, 0, 5}, 3, &error);
+    keyframes_append(&shot.scene.eye.keys, 1, (float[3]){0, 0, 9}, 3, &error);
     view_of(&shot, 60, &view);
     assert_true(fabsf(view.eye[2] - 9) < 1e-5f);
+    close_shot(&shot);
+}
+
+static void set_formulas(Track *track, const char *range, const char *const texts[3])
+{
+    const ParamInfo *info = params_find(range);
+    const TrackRange bounds = {info->minimum, info->maximum, 1};
+    for (uint32_t i = 0; i < 3 && texts[i]; ++i)
+        assert_int_equal(track_set_formula(track, i, texts[i], &bounds, NULL), RESULT_OK);
+}
+
+// An eye that circles its target, itself in motion, while the lens zooms. Formulas follow the
+// scene's clock: in half speed, frame 60 of 30 a second is at 1 s.
+static void formulas_move_eye_target_and_lens(void **state)
+{
+    (void)state;
+    Shot shot;
+    View view;
+    open_shot(&shot, 1);
+    shot.scene.run.fps = 30;
+    shot.scene.run.speed = 0.5f;
+    set_formulas(&shot.scene.eye, "eye", (const char *[]){"3*sin(pi*t/2)", "1+t", "3*cos(pi*t/2)"});
+    set_formulas(&shot.scene.target, "eye", (const char *[]){"0", "1+t", "0"});
+    set_formulas(&shot.scene.fov, "fov", (const char *[]){"40-10*t", NULL, NULL});
+    frame_shot(&shot);
+    view_of(&shot, 60, &view);
+    const vec3 expected = {3, 2, 0};
+    for (int k = 0; k < 3; ++k) assert_true(fabsf(view.eye[k] - expected[k]) < 1e-5f);
+    assert_true(fabsf(glm_deg(view.fov) - 30) < 1e-4f);
+    vec3 seen;
+    glm_mat4_mulv3(view.view, (vec3){0, 2, 0}, 1, seen);
+    assert_true(fabsf(seen[0]) < 1e-5f && fabsf(seen[1]) < 1e-5f && fabsf(seen[2] + 3) < 1e-5f);
     close_shot(&shot);
 }
 
@@ -401,6 +433,7 @@ int main(void)
         cmocka_unit_test(frames_are_repeatable),
         cmocka_unit_test(the_unit_does_not_change_the_picture),
         cmocka_unit_test(given_eye_and_target_are_taken),
+        cmocka_unit_test(formulas_move_eye_target_and_lens),
         cmocka_unit_test(every_camera_is_finite),
         cmocka_unit_test(room_is_left_for_followers),
         cmocka_unit_test(of_an_empty_scene_the_planes_are_in_order),

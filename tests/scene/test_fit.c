@@ -58,7 +58,7 @@ static void open_shot(Shot *shot)
 static void close_shot(Shot *shot)
 {
     params_destroy_run(&shot->scene.run);
-    keyframes_destroy(&shot->scene.fov);
+    track_destroy(&shot->scene.fov);
 }
 
 static void fit(Shot *shot, float radius)
@@ -131,8 +131,13 @@ static void the_points_radius_and_a_zoom_are_counted_in(void **state)
     Shot shot;
     open_shot(&shot);
     check_margin(&shot, 0.05f);
-    keyframes_append(&shot.scene.fov, 0, (float[1]){50}, 1, &error);
-    keyframes_append(&shot.scene.fov, 1, (float[1]){20}, 1, &error);
+    keyframes_append(&shot.scene.fov.keys, 0, (float[1]){50}, 1, &error);
+    keyframes_append(&shot.scene.fov.keys, 1, (float[1]){20}, 1, &error);
+    check_margin(&shot, 0.05f);
+    track_destroy(&shot.scene.fov);
+    assert_int_equal(
+        track_set_formula(&shot.scene.fov, 0, "t < 0.1 ? 50 : 20", &(TrackRange){1, 170, 1}, NULL),
+        RESULT_OK);
     check_margin(&shot, 0.05f);
     close_shot(&shot);
 }

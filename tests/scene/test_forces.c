@@ -151,16 +151,36 @@ static void keyframes_win_over_constants(void **state)
     make_scene(&scene, 9, 9, 9);
     scene.run.gust = 0;
     scene.run.wind_spread = 0;
-    scene.wind.interpolation = INTERPOLATION_LINEAR;
-    assert_int_equal(keyframes_append(&scene.wind, 0, (const float[]){0, 0, 0}, 3, NULL),
+    scene.wind.keys.interpolation = INTERPOLATION_LINEAR;
+    assert_int_equal(keyframes_append(&scene.wind.keys, 0, (const float[]){0, 0, 0}, 3, NULL),
                      RESULT_OK);
-    assert_int_equal(keyframes_append(&scene.wind, 2, (const float[]){4, 0, 0}, 3, NULL),
+    assert_int_equal(keyframes_append(&scene.wind.keys, 2, (const float[]){4, 0, 0}, 3, NULL),
                      RESULT_OK);
-    assert_int_equal(keyframes_append(&scene.gravity, 0, (const float[]){0, 0, -3}, 3, NULL),
+    assert_int_equal(keyframes_append(&scene.gravity.keys, 0, (const float[]){0, 0, -3}, 3, NULL),
                      RESULT_OK);
     forces_evaluate(&forces, &scene, 1);
     assert_true(fabsf(forces.wind[2][0] - 2) < 1e-6f && fabsf(forces.wind[2][1]) < 1e-6f);
     assert_true(forces.gravity[2] == -3 && forces.gravity[1] == 0);
+    scene_destroy(&scene);
+}
+
+static void formulas_blow_with_the_time(void **state)
+{
+    (void)state;
+    Scene scene;
+    Forces forces;
+    make_scene(&scene, 9, 9, 9);
+    scene.run.gust = 0;
+    scene.run.wind_spread = 0;
+    assert_true(forces_are_constant(&scene));
+    const char *const texts[] = {"2*t", "0", "-1"};
+    for (uint32_t i = 0; i < 3; ++i)
+        assert_int_equal(
+            track_set_formula(&scene.wind, i, texts[i], &(TrackRange){-100, 100, 1}, NULL),
+            RESULT_OK);
+    assert_false(forces_are_constant(&scene));
+    forces_evaluate(&forces, &scene, 3);
+    assert_true(fabsf(forces.wind[2][0] - 6) < 1e-5f && fabsf(forces.wind[2][2] + 1) < 1e-6f);
     scene_destroy(&scene);
 }
 
@@ -174,6 +194,7 @@ int main(void)
         cmocka_unit_test(the_spread_ends_just_before_a_right_angle),
         cmocka_unit_test(gusts_stay_within_their_share_and_vary),
         cmocka_unit_test(keyframes_win_over_constants),
+        cmocka_unit_test(formulas_blow_with_the_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

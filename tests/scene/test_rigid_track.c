@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Motion of the head by keys and by formulas.
 #include "scene/rigid_track.h"
+#include "support/head_formulas.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -39,7 +40,7 @@ static void turn_to(RigidTrack *track, double time, float x, float y, float z)
 {
     Error error;
     const float vector[3] = {x, y, z};
-    assert_int_equal(keyframes_append(&track->rotation, time, vector, 3, &error), RESULT_OK);
+    assert_int_equal(keyframes_append(&track->rotation.keys, time, vector, 3, &error), RESULT_OK);
 }
 
 static void a_track_without_keys_moves_nothing(void **state)
@@ -57,7 +58,7 @@ static void a_track_without_keys_moves_nothing(void **state)
 static void a_turn_is_right_handed_and_leaves_its_pivot_in_place(void **state)
 {
     (void)state;
-    RigidTrack track = {.pivot = {0, 1, 0}, .rotation.interpolation = INTERPOLATION_LINEAR};
+    RigidTrack track = {.pivot = {0, 1, 0}, .rotation.keys.interpolation = INTERPOLATION_LINEAR};
     turn_to(&track, 0, 0, 0, 0);
     turn_to(&track, 1, 0, 0, PI / 2);
     float moved[3];
@@ -77,7 +78,7 @@ static void translation_comes_after_the_turn(void **state)
     Error error;
     const float shift[3] = {10, 0, 0};
     turn_to(&track, 0, 0, PI, 0);
-    assert_int_equal(keyframes_append(&track.translation, 0, shift, 3, &error), RESULT_OK);
+    assert_int_equal(keyframes_append(&track.translation.keys, 0, shift, 3, &error), RESULT_OK);
     float moved[3];
     move(&track, 0, (const float[3]){1, 2, 3}, moved);
     assert_at(moved, 9, 2, -3);
@@ -87,7 +88,7 @@ static void translation_comes_after_the_turn(void **state)
 static void turns_of_more_than_half_a_circle_are_made_as_written(void **state)
 {
     (void)state;
-    RigidTrack track = {.rotation.interpolation = INTERPOLATION_LINEAR};
+    RigidTrack track = {.rotation.keys.interpolation = INTERPOLATION_LINEAR};
     turn_to(&track, 0, 0, 0, 0);
     turn_to(&track, 2, 0, 0, 4 * PI);
     float moved[3];
@@ -100,21 +101,13 @@ static void turns_of_more_than_half_a_circle_are_made_as_written(void **state)
     rigid_track_destroy(&track);
 }
 
-static void set_formulas(Formula formulas[3], const char *x, const char *y, const char *z)
-{
-    const char *texts[] = {x, y, z};
-    Error error;
-    for (int i = 0; i < 3; i++)
-        assert_int_equal(formula_create(&formulas[i], texts[i], &error), RESULT_OK);
-}
-
 // A single key is constant; two keys of the rotation alone are a motion.
 static void only_two_keys_of_either_kind_move(void **state)
 {
     (void)state;
     for (int turns = 0; turns < 2; ++turns) {
         RigidTrack track = {0};
-        Keyframes *keys = turns ? &track.rotation : &track.translation;
+        Keyframes *keys = turns ? &track.rotation.keys : &track.translation.keys;
         assert_true(rigid_track_is_still(&track));
         assert_int_equal(keyframes_append(keys, 0, (const float[]){0, 0, 0}, 3, NULL), RESULT_OK);
         assert_true(rigid_track_is_still(&track));
@@ -128,8 +121,8 @@ static void formulas_move_in_metres_and_turn_in_degrees(void **state)
 {
     (void)state;
     RigidTrack track = {0};
-    set_formulas(track.translation_formula, "0.5*t", "sin(pi*t/2)", "-1");
-    set_formulas(track.rotation_formula, "0", "0", "t<1 ? 0 : 90*smoothstep(1, 2, t)");
+    head_set_translation(&track, "0.5*t", "sin(pi*t/2)", "-1");
+    head_set_rotation(&track, "0", "0", "t<1 ? 0 : 90*smoothstep(1, 2, t)");
     assert_false(rigid_track_is_still(&track));
     float moved[3];
     move(&track, 1, (const float[3]){1, 0, 0}, moved);
@@ -144,7 +137,7 @@ static void a_formula_that_fails_somewhere_is_reported_and_cut(void **state)
     (void)state;
     RigidTrack track = {0};
     Error error;
-    set_formulas(track.translation_formula, "1/(t-1)", "sqrt(2-t)", "0");
+    head_set_translation(&track, "1/(t-1)", "sqrt(2-t)", "0");
     assert_int_equal(rigid_track_check(&track, 0.5, &error), RESULT_OK);
     assert_int_equal(rigid_track_check(&track, 1, &error), RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "translate[0]: '1/(t-1)' is inf at t = 1, expected"));

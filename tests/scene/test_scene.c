@@ -24,17 +24,17 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_int_equal(scene.run.frames, 90);
     assert_int_equal(scene.run.size[0], 640);
     assert_true(scene.run.background[3] == 0);
-    assert_true(scene.run.gravity[1] == -3.71f && scene.gravity.count == 0);
-    assert_int_equal(scene.wind.count, 2);
-    assert_int_equal(scene.wind.interpolation, INTERPOLATION_LINEAR);
-    assert_int_equal(scene.bodies[0].head.rotation.count, 2);
-    assert_int_equal(scene.bodies[0].head.translation.count, 2);
-    assert_true(scene.bodies[0].head.translation.time[0] == 1 &&
+    assert_true(scene.run.gravity[1] == -3.71f && scene.gravity.keys.count == 0);
+    assert_int_equal(scene.wind.keys.count, 2);
+    assert_int_equal(scene.wind.keys.interpolation, INTERPOLATION_LINEAR);
+    assert_int_equal(scene.bodies[0].head.rotation.keys.count, 2);
+    assert_int_equal(scene.bodies[0].head.translation.keys.count, 2);
+    assert_true(scene.bodies[0].head.translation.keys.time[0] == 1 &&
                 scene.bodies[0].head.pivot[1] == 1.5f);
-    assert_true(fabsf(scene.bodies[0].head.rotation.value[4] - 1.57079633f) < 1e-6f);
-    assert_int_equal(scene.eye.count, 2);
-    assert_int_equal(scene.target.count, 0);
-    assert_int_equal(scene.fov.count, 1);
+    assert_true(fabsf(scene.bodies[0].head.rotation.keys.value[4] - 1.57079633f) < 1e-6f);
+    assert_int_equal(scene.eye.keys.count, 2);
+    assert_int_equal(scene.target.keys.count, 0);
+    assert_int_equal(scene.fov.keys.count, 1);
     assert_int_equal(scene.bodies[0].colliders.count, 3);
     assert_true(scene.bodies[0].colliders.list[0].world &&
                 scene.bodies[0].colliders.list[0].numbers[7] == 0.05f);
@@ -71,10 +71,10 @@ static void a_section_overrides_the_top_level_and_flags_override_both(void **sta
     assert_true(scene.sections[0].params.style == 0.125f);
     assert_true(scene.sections[1].params.style == 0.125f);
     assert_int_equal(scene.run.frames, 7);
-    assert_int_equal(scene.wind.count, 0);
+    assert_int_equal(scene.wind.keys.count, 0);
     assert_true(scene.run.wind[0] == 1);
-    assert_int_equal(scene.fov.count, 0);
-    assert_int_equal(scene.eye.count, 2);
+    assert_int_equal(scene.fov.keys.count, 0);
+    assert_int_equal(scene.eye.keys.count, 2);
     scene_destroy(&scene);
 }
 
@@ -265,18 +265,18 @@ static void keys_are_written_at_their_own_times(void **state)
                      RESULT_OK);
     const float point[3] = {1, 2, 3}, fov[1] = {30};
     for (int i = 0; i < 3; ++i) {
-        assert_int_equal(keyframes_append(&scene.eye, 2 * i, point, 3, &error), RESULT_OK);
-        assert_int_equal(keyframes_append(&scene.target, 1 + i, point, 3, &error), RESULT_OK);
-        assert_int_equal(keyframes_append(&scene.fov, 3 * i, fov, 1, &error), RESULT_OK);
+        assert_int_equal(keyframes_append(&scene.eye.keys, 2 * i, point, 3, &error), RESULT_OK);
+        assert_int_equal(keyframes_append(&scene.target.keys, 1 + i, point, 3, &error), RESULT_OK);
+        assert_int_equal(keyframes_append(&scene.fov.keys, 3 * i, fov, 1, &error), RESULT_OK);
     }
     char *text = dump(&scene);
     if (read_scene(state, &again, text, &error) != RESULT_OK) fail_msg("%s", error.text);
-    assert_int_equal(again.eye.count, 3);
-    assert_int_equal(again.target.count, 3);
-    assert_int_equal(again.fov.count, 3);
+    assert_int_equal(again.eye.keys.count, 3);
+    assert_int_equal(again.target.keys.count, 3);
+    assert_int_equal(again.fov.keys.count, 3);
     for (int i = 0; i < 3; ++i)
-        assert_true(again.eye.time[i] == 2 * i && again.target.time[i] == 1 + i &&
-                    again.fov.time[i] == 3 * i);
+        assert_true(again.eye.keys.time[i] == 2 * i && again.target.keys.time[i] == 1 + i &&
+                    again.fov.keys.time[i] == 3 * i);
     free(text);
     scene_destroy(&scene);
     scene_destroy(&again);
@@ -293,6 +293,12 @@ static void what_is_written_is_a_scene_file_of_the_same_scene(void **state)
         "{\"sections\": [{\"file\": \"/a\"}], \"head\": {\"translate\": [\"0.1*sin(t)\", 0.25, "
         "\"t^2\"], \"pivot\": [0, 1, 0], \"keys\": [{\"time\": 0, \"rotate\": [0, 9, 0]}]}}";
     if (read_scene(state, &scene, formulas, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_written_again(state, &scene);
+    scene_destroy(&scene);
+    const char *camera = "{\"sections\": [{\"file\": \"/a\"}], \"wind\": {\"formula\": [1, 0, "
+                         "\"sin(t)\"]}, \"camera\": {\"eye\": [\"sin(t)\", 0.5, \"cos(t)\"], "
+                         "\"fov\": \"30+t\", \"keys\": [{\"time\": 0, \"target\": [0, 9, 0]}]}}";
+    if (read_scene(state, &scene, camera, &error) != RESULT_OK) fail_msg("%s", error.text);
     assert_written_again(state, &scene);
     scene_destroy(&scene);
     // A body's own list takes the place of the default's text, even when the list is empty.
@@ -412,7 +418,7 @@ static const struct {
     {"{" HAIR ", \"head\": {\"keys\": [{\"time\": 0, \"rotate\": [0, 0, 0]}], "
      "\"interpolation\": \"cubic\"}}",
      "head.interpolation: got \"cubic\", expected one of \"smooth\" \"linear\""},
-    {"{" HAIR ", \"head\": {\"keys\": [], \"pivot\": 1}}", "head.pivot: got 1"},
+    {"{" HAIR ", \"head\": {\"rotate\": [0, 0, 0], \"pivot\": 1}}", "head.pivot: got 1"},
     {"{" HAIR ", \"head\": 1}", "head: got 1, expected an object"},
     {"{" HAIR ", \"head\": {}}", "head: expected a key 'keys'"},
     {"{" HAIR ", \"head\": {\"rotate\": [0, \"30*sin(6 t)\", 0]}}",
@@ -428,7 +434,23 @@ static const struct {
     {"{" HAIR ", \"camera\": {\"keys\": [{\"time\": 0, \"fov\": 180}]}}",
      "camera.keys[0].fov: got 180, expected a number from 1 to 170 (nearest: 170)"},
     {"{" HAIR ", \"fov\": 20, \"camera\": {\"keys\": [{\"time\": 0, \"fov\": 30}]}}",
-     "fov: given here and by the keys of 'camera'"},
+     "fov: given here and by 'camera'"},
+    {"{" HAIR ", \"eye\": [0, 1, 2], \"camera\": {\"eye\": [\"t\", 0, 1]}}",
+     "eye: given here and by 'camera'"},
+    {"{" HAIR ", \"camera\": {}}", "camera: expected a key 'keys'"},
+    {"{" HAIR ", \"camera\": {\"eye\": [0, \"1/(t-0.5)\", 1]}}",
+     "camera.eye[1]: '1/(t-0.5)' is inf at t = 0.5, expected"},
+    {"{" HAIR ", \"camera\": {\"target\": [0, \"sin(\", 1]}}", "camera.target[1]: got 'sin('"},
+    {"{" HAIR ", \"camera\": {\"target\": [0, 1, \"1/t\"]}}",
+     "camera.target[2]: '1/t' is inf at t = 0"},
+    {"{" HAIR ", \"camera\": {\"target\": \"t\"}}",
+     "camera.target: got \"t\", expected an array of three numbers or formulas of t"},
+    {"{" HAIR ", \"frames\": 4, \"fps\": 1, \"camera\": {\"fov\": \"100*t\"}}",
+     "camera.fov: '100*t' is 0 at t = 0, expected 1 to 170"},
+    {"{" HAIR ", \"camera\": {\"fov\": \"30\", \"keys\": [{\"time\": 0, \"fov\": 30}]}}",
+     "camera.fov: given here and by 'keys'"},
+    {"{" HAIR ", \"wind\": {\"formula\": [1, \"1/t\", 0]}}",
+     "wind.formula[1]: '1/t' is inf at t = 0, expected"},
     {"{" HAIR ", \"colliders\": [{\"sphere\": [1, 2, 3]}]}", "expected an array of 4 numbers"},
     {"{" HAIR ", \"colliders\": [{\"ground\": 1, \"frame\": \"head\"}]}",
      "colliders[0].frame: a ground always"},

@@ -4,6 +4,7 @@
 #include "sim/simulation_state.h"
 #include "support/body_fixture.h"
 #include "support/hair_fixture.h"
+#include "support/head_formulas.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -37,13 +38,6 @@ static void bend(double time, const double rest[3], double place[3])
     place[2] = rest[2] - 0.05 * time;
 }
 
-static void set_formulas(Formula *formulas, const char *x, const char *y)
-{
-    const char *const texts[3] = {x, y, "0"};
-    for (int k = 0; k < 3; ++k)
-        assert_int_equal(formula_create(&formulas[k], texts[k], NULL), RESULT_OK);
-}
-
 static void set_run(Scene *scene, float rate)
 {
     scene->run.sim_rate = rate;
@@ -63,8 +57,8 @@ static void create_head(Stage *stage, const char *algo, const char *variant, flo
     simulation_fixture_create(&stage->head, algo, variant);
     set_run(scene, rate);
     rigid_track_destroy(&body->head);
-    set_formulas(body->head.translation_formula, "t < 4.5/60 ? 0.2*t : 3", "0");
-    set_formulas(body->head.rotation_formula, "0", "200*t");
+    head_set_translation(&body->head, "t < 4.5/60 ? 0.2*t : 3", "0", "0");
+    head_set_rotation(&body->head, "0", "200*t", "0");
     assert_int_equal(colliders_parse(&body->colliders, "world:sphere:0,1.5,0.1,0.02", NULL),
                      RESULT_OK);
     assert_int_equal(scalp_make_mesh(&stage->ball, SCALP_SPHERE, 8, NULL), RESULT_OK);

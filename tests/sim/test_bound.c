@@ -2,6 +2,7 @@
 // Hair bound to a deforming mesh.
 #include "sim/simulation_state.h"
 #include "support/body_fixture.h"
+#include "support/head_formulas.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -30,21 +31,14 @@ static void rigid(double time, const double rest[3], double place[3])
     place[2] = PIVOT[2] - s * x + c * z + at[2];
 }
 
-static void set_formula(Formula *formula, const char *text)
-{
-    assert_int_equal(formula_create(formula, text, NULL), RESULT_OK);
-}
-
 static void create_turning(SimulationFixture *fixture, const char *algo)
 {
     simulation_fixture_create(fixture, algo, "");
     RigidTrack *head = &fixture->scene.bodies[0].head;
     rigid_track_destroy(head);
-    for (int k = 0; k < 3; ++k) {
-        set_formula(&head->translation_formula[k], "0");
-        set_formula(&head->rotation_formula[k], k == 1 ? "2*t*180/pi" : "0");
-        head->pivot[k] = (float)PIVOT[k];
-    }
+    head_set_translation(head, "0", "0", "0");
+    head_set_rotation(head, "0", "2*t*180/pi", "0");
+    for (int k = 0; k < 3; ++k) head->pivot[k] = (float)PIVOT[k];
 }
 
 static void create_tracked(SimulationFixture *fixture, const char *algo, const char *variant)
@@ -52,12 +46,8 @@ static void create_tracked(SimulationFixture *fixture, const char *algo, const c
     simulation_fixture_create(fixture, algo, variant);
     RigidTrack *head = &fixture->scene.bodies[0].head;
     rigid_track_destroy(head);
-    set_formula(&head->translation_formula[0], "0.05*(1-cos(3*t))");
-    set_formula(&head->translation_formula[1], "0.02*t^2");
-    set_formula(&head->translation_formula[2], "-0.1*t");
-    set_formula(&head->rotation_formula[0], "0");
-    set_formula(&head->rotation_formula[1], "0.5*(1-cos(4*t))*180/pi");
-    set_formula(&head->rotation_formula[2], "0");
+    head_set_translation(head, "0.05*(1-cos(3*t))", "0.02*t^2", "-0.1*t");
+    head_set_rotation(head, "0", "0.5*(1-cos(4*t))*180/pi", "0");
     for (int k = 0; k < 3; ++k) head->pivot[k] = (float)PIVOT[k];
 }
 

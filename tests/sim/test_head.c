@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A head that starts with a velocity, and a head that jumps, in a whole simulation.
 #include "sim/head.h"
+#include "support/head_formulas.h"
 #include "support/simulation_fixture.h"
 
 #include <cglm/cglm.h>
@@ -14,13 +15,6 @@
 
 enum { LAST_VERTEX = 11, BATCH_OF_12 = 1 };
 
-static void set_formulas(Formula formulas[3], const char *x, const char *y, const char *z)
-{
-    const char *const texts[] = {x, y, z};
-    for (int i = 0; i < 3; ++i)
-        assert_int_equal(formula_create(&formulas[i], texts[i], NULL), RESULT_OK);
-}
-
 // A head moved by formulas instead of keys, in still air.
 static void create(SimulationFixture *fixture, const char *algo, const char *x, const char *turn)
 {
@@ -28,8 +22,8 @@ static void create(SimulationFixture *fixture, const char *algo, const char *x, 
     rigid_track_destroy(&fixture->scene.bodies[0].head);
     memset(fixture->scene.run.wind, 0, sizeof fixture->scene.run.wind);
     fixture->scene.run.gust = 0;
-    set_formulas(fixture->scene.bodies[0].head.translation_formula, x, "0", "0");
-    set_formulas(fixture->scene.bodies[0].head.rotation_formula, "0", turn, "0");
+    head_set_translation(&fixture->scene.bodies[0].head, x, "0", "0");
+    head_set_rotation(&fixture->scene.bodies[0].head, "0", turn, "0");
 }
 
 // The tip in the head's coordinates.

@@ -18,10 +18,10 @@ static void create(SimulationFixture *fixture, const char *algo, const char *var
     const float still[3] = {0}, turned[3] = {0, 0, tilt};
     simulation_fixture_create(fixture, algo, variant);
     Scene *scene = &fixture->scene;
-    keyframes_destroy(&scene->bodies[0].head.translation);
-    keyframes_destroy(&scene->bodies[0].head.rotation);
-    keyframes_append(&scene->bodies[0].head.translation, 0, still, 3, NULL);
-    keyframes_append(&scene->bodies[0].head.rotation, 0, turned, 3, NULL);
+    track_destroy(&scene->bodies[0].head.translation);
+    track_destroy(&scene->bodies[0].head.rotation);
+    keyframes_append(&scene->bodies[0].head.translation.keys, 0, still, 3, NULL);
+    keyframes_append(&scene->bodies[0].head.rotation.keys, 0, turned, 3, NULL);
     scene->run.wind[0] = 0;
     scene->run.fps = (float)rate;
     scene->sections[0].params.sleep = 0;
@@ -117,7 +117,7 @@ static void check_tilt(const char *algo, const char *variant)
     SimulationFixture fixture;
     if (never_steps(algo)) return;
     create(&fixture, algo, variant, 0, 60);
-    keyframes_append(&fixture.scene.bodies[0].head.rotation, 1, turned, 3, NULL);
+    keyframes_append(&fixture.scene.bodies[0].head.rotation.keys, 1, turned, 3, NULL);
     simulation_fixture_start(&fixture);
     const Hair *hair = &fixture.simulation.sections[0].hair;
     Float3 *start = read_positions(&fixture, 0), *tilted = read_positions(&fixture, 240);
@@ -148,8 +148,8 @@ static void only_the_first_gravity_is_held(void **state)
     for (int change = 0; change < 2; ++change) {
         SimulationFixture fixture;
         create(&fixture, "hybrid", "", 0, 60);
-        keyframes_append(&fixture.scene.gravity, 0, first, 3, NULL);
-        if (change) keyframes_append(&fixture.scene.gravity, 1, later, 3, NULL);
+        keyframes_append(&fixture.scene.gravity.keys, 0, first, 3, NULL);
+        if (change) keyframes_append(&fixture.scene.gravity.keys, 1, later, 3, NULL);
         double moved = displacement_after(&fixture, 120);
         assert_true(change ? moved > 0.02 : moved < 1e-4);
     }

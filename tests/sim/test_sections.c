@@ -52,7 +52,7 @@ static void create(World *world, const Kind *kinds, int count)
     assert_int_equal(scene_create(&world->scene, NULL), RESULT_OK);
     world->scene.run.wind[0] = 2;
     for (int i = 0; i < 2; ++i)
-        keyframes_append(&world->scene.bodies[0].head.translation, i,
+        keyframes_append(&world->scene.bodies[0].head.translation.keys, i,
                          (float[]){0.1f * (float)i, 0, 0}, 3, NULL);
     for (int i = 0; i < count; ++i) add_section(world, &kinds[i]);
     gpu_timer_create(&world->timer, false, true);
@@ -141,7 +141,7 @@ static void still_sections_are_left_alone(void **state)
     World world;
     create(&world, kinds, 3);
     memset(world.scene.run.wind, 0, sizeof world.scene.run.wind);
-    world.scene.bodies[0].head.translation.count = 0;
+    world.scene.bodies[0].head.translation.keys.count = 0;
     start(&world);
     Simulation *simulation = &world.simulation;
     while (!simulation->sections[1].sleep.asleep && simulation->frame < 60 * 60)

@@ -89,8 +89,8 @@ static void frames_between_steps_lie_between_them(void **state)
     simulation_fixture_create(&fixture, "chain", "");
     fixture.scene.run.sim_rate = 30;
     fixture.scene.run.fps = 90;
-    keyframes_destroy(&fixture.scene.bodies[0].head.translation);
-    keyframes_destroy(&fixture.scene.bodies[0].head.rotation);
+    track_destroy(&fixture.scene.bodies[0].head.translation);
+    track_destroy(&fixture.scene.bodies[0].head.rotation);
     simulation_fixture_start(&fixture);
     for (int step = 0; step < 8; ++step) {
         float p[4][3];
@@ -188,8 +188,8 @@ static void the_warm_up_is_simulated_with_the_head_at_rest(void **state)
     assert_int_equal(settled.simulation.step, 0);
     simulation_fixture_create(&plain, "chain", "");
     plain.scene.run.wind[0] = 0;
-    keyframes_destroy(&plain.scene.bodies[0].head.translation);
-    keyframes_destroy(&plain.scene.bodies[0].head.rotation);
+    track_destroy(&plain.scene.bodies[0].head.translation);
+    track_destroy(&plain.scene.bodies[0].head.rotation);
     simulation_fixture_start(&plain);
     uint64_t first = simulation_fixture_hash(&plain);
     simulation_fixture_go(&plain, 30);
@@ -213,6 +213,14 @@ static void automatic_substeps_are_the_fewest_stable_ones(void **state)
     run->gravity[1] = -200;
     double g = simulation_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
     assert_true(fabs(g - (200 + 3 * 0.5 * 1.5)) < 1e-6); // drag 3/s, wind 0.5 m/s, half of it gusts
+    for (uint32_t i = 0; i < 3; ++i) // the wind's greatest speed in the frames' time counts
+        assert_int_equal(track_set_formula(&fixture.scene.wind, i, i == 1 ? "4*sin(pi*t)" : "0",
+                                           &(TrackRange){-100, 100, 1}, NULL),
+                         RESULT_OK);
+    run->frames = 25;
+    double windy = simulation_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
+    assert_true(fabs(windy - (200 + 3 * 4 * 1.5)) < 1e-4);
+    track_destroy(&fixture.scene.wind);
     simulation_fixture_start(&fixture);
     int chosen = fixture.simulation.substeps;
     assert_true(chosen > 1);

@@ -236,7 +236,7 @@ static void gravity_wakes(void **state)
     (void)state;
     World world;
     create_scene(&world, "dftl", 20, 1e-5f);
-    change_at(&world.scene.gravity, WOKEN_S, (float[]){0, -9.81f, 0}, (float[]){0, -9.8f, 0});
+    change_at(&world.scene.gravity.keys, WOKEN_S, (float[]){0, -9.81f, 0}, (float[]){0, -9.8f, 0});
     check_wakes(&world);
 }
 
@@ -246,7 +246,7 @@ static void wind_wakes(void **state)
     World world;
     create_scene(&world, "dftl", 20, 1e-5f);
     world.scene.run.gust = 0;
-    change_at(&world.scene.wind, WOKEN_S, (float[]){1, 0, 0}, (float[]){1.1f, 0, 0});
+    change_at(&world.scene.wind.keys, WOKEN_S, (float[]){1, 0, 0}, (float[]){1.1f, 0, 0});
     check_wakes(&world);
 }
 
@@ -255,7 +255,7 @@ static void the_head_wakes(void **state)
     (void)state;
     World world;
     create_scene(&world, "dftl", 20, 1e-5f);
-    change_at(&world.scene.bodies[0].head.translation, WOKEN_S, (float[]){0, 0, 0},
+    change_at(&world.scene.bodies[0].head.translation.keys, WOKEN_S, (float[]){0, 0, 0},
               (float[]){0, 0, 0.01f});
     check_wakes(&world);
 }

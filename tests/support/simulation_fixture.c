@@ -44,8 +44,8 @@ void simulation_fixture_create(SimulationFixture *fixture, const char *algo, con
     const float poses[][3] = {{0, 0, 0}, {0.02f, 0, 0.01f}, {-0.01f, 0, 0}},
                 turns[][3] = {{0, 0, 0}, {0, 0.3f, 0}, {0, -0.2f, 0.1f}};
     for (int i = 0; i < 3; ++i) {
-        keyframes_append(&scene->bodies[0].head.translation, 0.3 * i, poses[i], 3, NULL);
-        keyframes_append(&scene->bodies[0].head.rotation, 0.3 * i, turns[i], 3, NULL);
+        keyframes_append(&scene->bodies[0].head.translation.keys, 0.3 * i, poses[i], 3, NULL);
+        keyframes_append(&scene->bodies[0].head.rotation.keys, 0.3 * i, turns[i], 3, NULL);
     }
     make_strands(&fixture->strands);
     gpu_timer_create(&fixture->timer, false, true);
