@@ -108,13 +108,21 @@ SIMD_INLINE void empty_queue(Queue *queue, uint32_t *sums)
     queue->count = 0;
 }
 
+SIMD_INLINE void queue_points(Brush *brush, const int place[W], const uint32_t part[W])
+{
+    Queue *queue = &brush->queue;
+    memcpy(queue->place + queue->count, place, W * sizeof *place);
+    memcpy(queue->part + queue->count, part, W * sizeof *part);
+    queue->count += W;
+    if (queue->count == QUEUE) empty_queue(queue, brush->sums);
+}
+
 SIMD_INLINE void add_points(Brush *brush, int map, const Points *points)
 {
     const ShadowMap *shadow = brush->splat->shadow;
     int side = shadow->side, wide = shadow->wide, first = map * (int)brush->map_words;
     const float *depths = brush->splat->depths + (size_t)map * (size_t)side * (size_t)side;
     float edge = (float)side - 0.5f;
-    Queue *queue = &brush->queue;
     for (int turn = 0; turn < points->most; ++turn) {
         int place[W];
         uint32_t part[W];
@@ -124,10 +132,7 @@ SIMD_INLINE void add_points(Brush *brush, int map, const Points *points)
             place[k] = first + (spot.row * LAYERS + layer) * wide + spot.column;
             part[k] = spot.inside ? points->part[k] : 0;
         }
-        memcpy(queue->place + queue->count, place, sizeof place);
-        memcpy(queue->part + queue->count, part, sizeof part);
-        queue->count += W;
-        if (queue->count == QUEUE) empty_queue(queue, brush->sums);
+        queue_points(brush, place, part);
     }
 }
 
@@ -147,35 +152,53 @@ SIMD_INLINE void keep_firsts(const Brush *brush, int map, const Points *points)
     }
 }
 
-// Draws a wide ribbon with the width of its segment at the middle.
-static void lay_wide(const Brush *brush, int map, const Points *p, int k, float opacity,
-                     float weight)
+// Draws a wide ribbon with the width of its segment at the middle. Each lane is a point of its
+// grid.
+SIMD_INLINE void lay_wide(Brush *brush, int map, const Points *p, int k, float opacity,
+                          float weight, bool deep)
 {
     const ShadowSplat *splat = brush->splat;
     const ShadowMap *shadow = splat->shadow;
-    int side = splat->depths ? shadow->side : shadow->coarse, along = (int)p->along[k];
+    int side = deep ? shadow->side : shadow->coarse, wide = shadow->wide,
+        base = map * (int)brush->map_words;
     const float *depths = splat->depths + (size_t)map * (size_t)side * (size_t)side;
-    uint32_t *sums = brush->sums + (size_t)map * brush->map_words;
     float *first = brush->first + (size_t)map * brush->map_texels;
-    float width = p->width[k],
-          across = simd_min(simd_ceil(width * dense_wide(splat)), floorf(MOST / p->along[k])),
-          size = p->along[k] * sqrtf(p->step_u[k] * p->step_u[k] + p->step_v[k] * p->step_v[k]),
-          beside = width / (simd_max(size, 1e-9f) * across) * p->along[k];
-    float step_u = -p->step_v[k] * beside, step_v = p->step_u[k] * beside;
+    float width = p->width[k], along = p->along[k], edge = (float)side - 0.5f,
+          across = simd_min(simd_ceil(width * dense_wide(splat)), floorf(MOST / along)),
+          size = along * sqrtf(p->step_u[k] * p->step_u[k] + p->step_v[k] * p->step_v[k]),
+          beside = width / (simd_max(size, 1e-9f) * across) * along;
+    float u = p->u[k], v = p->v[k], z = p->z[k], step_u = p->step_u[k], step_v = p->step_v[k],
+          step_z = p->step_z[k], side_u = -step_v * beside, side_v = step_u * beside;
+    float inverse = 1 / across, middle = 0.5f * (across - 1);
     uint32_t part = caster_part(fibre_depth(opacity, width), width, size,
-                                splat->params[map].unit * weight, across * p->along[k]);
-    for (int i = 0; i < along * (int)across; ++i) {
-        float turn = (float)(i / (int)across),
-              column = (float)(i % (int)across) - 0.5f * (across - 1);
-        float u = p->u[k] + turn * p->step_u[k] + column * step_u,
-              v = p->v[k] + turn * p->step_v[k] + column * step_v,
-              z = p->z[k] + turn * p->step_z[k];
-        if (!(u >= 0 && v >= 0 && u <= (float)side - 0.5f && v <= (float)side - 0.5f)) continue;
-        int row = (int)v, texel = row * side + (int)u;
-        if (splat->depths)
-            sums[(row * LAYERS + (int)layer_of(z - depths[texel])) * shadow->wide + (int)u] += part;
+                                splat->params[map].unit * weight, across * along);
+    int count = (int)along * (int)across;
+    for (int n = 0; n < count; n += W) {
+        int place[W];
+        uint32_t parts[W];
+        float depth[W];
+        for (int i = 0; i < W; ++i) {
+            // The half keeps rounding from moving a row's first point to the row before.
+            float turn = (float)(int)(((float)(n + i) + 0.5f) * inverse),
+                  column = (float)(n + i) - turn * across - middle,
+                  at_u = u + turn * step_u + column * side_u,
+                  at_v = v + turn * step_v + column * side_v, at_z = z + turn * step_z,
+                  x = simd_min(simd_max(at_u, 0), edge), y = simd_min(simd_max(at_v, 0), edge);
+            bool inside = (at_u == x) & (at_v == y) & (n + i < count);
+            int row = (int)y, texel = row * side + (int)x;
+            if (deep) {
+                int layer = (int)layer_of(at_z - depths[texel]);
+                place[i] = base + (row * LAYERS + layer) * wide + (int)x;
+                parts[i] = inside ? part : 0;
+            } else {
+                place[i] = texel;
+                depth[i] = inside ? simd_max(at_z, 0) : 1;
+            }
+        }
+        if (deep)
+            queue_points(brush, place, parts);
         else
-            first[texel] = simd_min(simd_max(z, 0), first[texel]);
+            for (int i = 0; i < W; ++i) first[place[i]] = simd_min(depth[i], first[place[i]]);
     }
 }
 
@@ -202,7 +225,7 @@ SIMD_INLINE void lay_next(Brush *brush, const Tile *tile, float weight, int j, c
             keep_firsts(brush, map, &points);
         for (int k = 0; points.wide && k < tile->strands; ++k)
             if (points.width[k] > CASTER_WIDE)
-                lay_wide(brush, map, &points, k, tile->opacity[k], weight);
+                lay_wide(brush, map, &points, k, tile->opacity[k], weight, deep);
     }
 }
 
