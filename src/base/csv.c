@@ -40,8 +40,8 @@ static Result read_file(Csv *csv, const char *path, Error *error)
     bytes_drop_mark(&csv->bytes);
     const char *text = (const char *)csv->bytes.data, *end = text + csv->bytes.size;
     if (!*text)
-        return error_set(error, RESULT_BAD_INPUT, "%s: no text: expected a line of columns' names",
-                         path);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: is empty: expected a line with the names of the columns", path);
     csv->column_count = count_of(text, text + strcspn(text, "\n"), ',') + 1;
     size_t lines = count_of(text, end, '\n') + 1;
     csv->column = calloc(csv->column_count, sizeof *csv->column);

@@ -145,7 +145,7 @@ static Result find_data(NpyArray *array, Reader *reader)
     array->count = 1;
     for (uint32_t i = 0; i < array->axes; i++) {
         if (array->shape[i] && array->count > UINT64_MAX / array->shape[i])
-            return reader_fail(reader, "the array's shape is beyond all memory");
+            return reader_fail(reader, "an array of this shape does not fit into memory");
         array->count *= array->shape[i];
     }
     if (!reader_check_array(reader, reader->at, array->count, array->item, "the array's elements"))

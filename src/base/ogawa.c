@@ -21,8 +21,8 @@ static uint64_t read_number(Reader *reader, uint64_t at)
 {
     if (!reader_ok(reader)) return 0;
     reader->at = at < reader->size ? (size_t)at : reader->size;
-    uint64_t low = reader_read_u32(reader, "a size or place");
-    uint64_t number = low | (uint64_t)reader_read_u32(reader, "a size or place") << 32;
+    uint64_t low = reader_read_u32(reader, "a size or position");
+    uint64_t number = low | (uint64_t)reader_read_u32(reader, "a size or position") << 32;
     if (reader_ok(reader)) reader->at = (size_t)at;
     return number;
 }
@@ -470,7 +470,7 @@ static void read_object(Ogawa *file, int number, uint64_t place, int depth)
     Block group = open_group(reader, place);
     OgawaObject *object = &file->object[number];
     object->group = place;
-    if (depth > DEEPEST) reader_fail(reader, "objects more than %d deep", DEEPEST);
+    if (depth > DEEPEST) reader_fail(reader, "objects are nested more than %d deep", DEEPEST);
     if (group.size == 0 || !is_new(file, place)) return;
     uint64_t properties = child_of(reader, group, 0);
     if (!(properties & DATA_BIT)) object->own = read_compound(file, properties);

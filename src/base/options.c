@@ -83,8 +83,7 @@ static Result fail_unknown(const OptionsWalk *walk, const char *flag, Error *err
     for (size_t i = 0; i < walk->option_count; ++i) names[i + 2] = walk->options[i].name;
     const char *nearest =
         long_name ? suggest_nearest(word + 3 * negated, names, walk->option_count + 2) : NULL;
-    if (!nearest)
-        return error_set(error, RESULT_USAGE, "%s: no such option: --help lists them", flag);
+    if (!nearest) return error_set(error, RESULT_USAGE, "%s: no such option: see --help", flag);
     char name[NAME_SIZE];
     snprintf(name, sizeof name, "%s%s", negated ? "no-" : "", nearest);
     for (char *at = name; *at; ++at)
@@ -161,7 +160,7 @@ static Result take_flag(OptionsWalk *walk, const char *word, OptionsArgument *ar
         return error_set(error, RESULT_USAGE, "%s: --%s takes a value: only switches have --no-",
                          argument->flag, name + 3);
     if (equals && (version || negated || (!argument->option->value && !is_switch)))
-        return error_set(error, RESULT_USAGE, "%s: got '%s', takes no value", argument->flag,
+        return error_set(error, RESULT_USAGE, "%s: got '%s', expected no value", argument->flag,
                          equals + 1);
     if (version) argument->found = OPTIONS_VERSION;
     if (is_switch && !equals) argument->text = negated ? "false" : "true";

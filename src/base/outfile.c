@@ -40,7 +40,7 @@ static Result check_identity(const char *path, const struct stat *file, Error *e
         return RESULT_OK;
     return error_set(error, RESULT_USAGE,
                      "%.300s: would overwrite %s, which %s: expected another name", path, other,
-                     written ? "this run has written" : "is read");
+                     written ? "this run has written" : "is an input");
 }
 
 // Whether the claim has already resolved the folder of this path. A claim on a whole folder covers
@@ -69,8 +69,8 @@ static Result find_place(Place *place, const char *path, Error *error)
     if (confined && place->is_link)
         result =
             error_set(error, RESULT_BAD_INPUT,
-                      "%.300s: is a link: outputs of a scene file follow none: expected a plain "
-                      "file, --allow-paths, or the path on the command line",
+                      "%.300s: is a symbolic link, which outputs of a scene file do not follow: "
+                      "expected a plain file, --allow-paths, or the path on the command line",
                       path);
     else if (confined && !place_is_within(place, &claim->home))
         result =

@@ -198,7 +198,7 @@ static const struct Form {
     [PARAM_INT] = {"a whole number ", "", NUMBER_INT, 1, 0, false},
     [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1, 0, false},
     [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
-    [PARAM_PROFILE] = {"a number ", ", or such from root to tip, A:B", NUMBER_FLOAT, 1, 0, false},
+    [PARAM_PROFILE] = {"a number ", ", or two such numbers, ROOT:TIP", NUMBER_FLOAT, 1, 0, false},
     [PARAM_TURN] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', false},
     [PARAM_COLOR] = {"a name (--help colors), #rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},

@@ -201,10 +201,11 @@ static Result check_home(const Spot *spot, const PathUse *use, struct stat *home
                          "--allow-paths, or the path on the command line",
                          use->home, use->name, use->path);
     if (!spot->place.is_link) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT,
-                     "%.300s: %s %.300s is a link, which outputs of a scene file do not follow: "
-                     "expected --allow-paths, or the path on the command line",
-                     use->home, use->name, use->path);
+    return error_set(
+        error, RESULT_BAD_INPUT,
+        "%.300s: %s %.300s is a symbolic link, which outputs of a scene file do not follow: "
+        "expected --allow-paths, or the path on the command line",
+        use->home, use->name, use->path);
 }
 
 // Checks a link that already exists under the name of one of the numbered files.
@@ -216,7 +217,7 @@ static Result check_link(const Uses *all, int i, const char *name, Error *error)
     if (use->home)
         return error_set(
             error, RESULT_BAD_INPUT,
-            "%.300s: %s %.300s: %.200s is a link, which outputs of a scene file do not "
+            "%.300s: %s %.300s: %.200s is a symbolic link, which outputs of a scene file do not "
             "follow: expected --allow-paths, or the path on the command line",
             use->home, use->name, use->path, name);
     int reason = place_copy(&spot.place, folder, name);

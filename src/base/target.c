@@ -119,9 +119,10 @@ static Result take_stream(Target *target, const char *text, Error *error)
         target->floats = target->format == TARGET_PFM || target->format == TARGET_EXR;
         return RESULT_OK;
     }
-    return error_set(error, RESULT_USAGE,
-                     "%s: standard output takes - (PNG), -.y4m, -.pfm or -.exr; ./%s is a file",
-                     text, text);
+    return error_set(
+        error, RESULT_USAGE,
+        "%s: expected - (PNG), -.y4m, -.pfm or -.exr for standard output, or ./%s for a file", text,
+        text);
 }
 
 static Result take_image(Target *target, const char *text, Error *error)

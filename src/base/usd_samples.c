@@ -37,7 +37,9 @@ void usd_samples_read(UsdSamples *samples, Reader *reader, bool timed, bool all)
     usd_text_expect(reader, '{');
     for (; usd_text_next_sample(reader, &time); ++samples->in_file) {
         if (time <= last)
-            reader_fail(reader, "the time sample %g does not lie behind the one before it", time);
+            reader_fail(reader,
+                        "time sample %g: expected a later time than that of the sample before",
+                        time);
         last = time;
         if (samples->in_file > 0 && !all)
             usd_text_skip_value(reader);

@@ -185,7 +185,7 @@ static void read_prim(UsdStage *stage, const char *specifier, int parent, int de
 {
     Reader *reader = stage->reader;
     char type[USD_WORD_SIZE] = "", name[USD_WORD_SIZE];
-    if (depth > DEEPEST) reader_fail(reader, "prims more than %d deep", DEEPEST);
+    if (depth > DEEPEST) reader_fail(reader, "prims are nested more than %d deep", DEEPEST);
     int prim = add_prim(stage, parent);
     if (prim < 0) return;
     stage->prim[prim].abstract = strcmp(specifier, "def") != 0;

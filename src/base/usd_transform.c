@@ -47,7 +47,8 @@ static void add_sample(UsdTrack *track, Reader *reader, double time)
         track->room = room;
     }
     if (track->count && track->timed && time <= track->time[track->count - 1])
-        reader_fail(reader, "the time sample %g does not lie behind the one before it", time);
+        reader_fail(reader, "time sample %g: expected a later time than that of the sample before",
+                    time);
     track->time[track->count] = time;
     memset(track->value[track->count], 0, sizeof *track->value);
     usd_text_read_numbers(reader, track->value[track->count++], 16);
@@ -260,7 +261,7 @@ void usd_transform_evaluate(const UsdTransform *transform, Reader *reader, doubl
             reader_fail(reader, "xformOpOrder names '%.60s', which has no value", name);
         else if (strncmp(name, PREFIX, strlen(PREFIX)) != 0 ||
                  !set_matrix(step, name + strlen(PREFIX), &op->track, time))
-            reader_fail(reader, "'%.60s' is no transform that is known", name);
+            reader_fail(reader, "'%.60s': unknown kind of transform", name);
         else if (inverse && !invert(step))
             reader_fail(reader, "'%.60s' has no inverse", name);
         else

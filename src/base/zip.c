@@ -140,8 +140,9 @@ static Result unpack(Zip *zip, const ZipFile *file, uint8_t *to)
         decompressor, zip->reader->data + file->at, file->packed, to, file->size, &got);
     libdeflate_free_decompressor(decompressor);
     if (result != LIBDEFLATE_SUCCESS || got != file->size)
-        return reader_fail(zip->reader, "'%s' does not unpack to its %llu bytes", file->name,
-                           (unsigned long long)file->size);
+        return reader_fail(zip->reader,
+                           "'%s' does not unpack to the %llu bytes that the archive names",
+                           file->name, (unsigned long long)file->size);
     return RESULT_OK;
 }
 
@@ -149,14 +150,14 @@ static Result check_size(Zip *zip, const ZipFile *file)
 {
     if (file->method != STORED && file->method != DEFLATED)
         return reader_fail(zip->reader,
-                           "'%s' is packed by method %u: expected stored or deflated files",
+                           "'%s' is compressed by method %u: expected deflate or no compression",
                            file->name, file->method);
     if (file->method == STORED && file->packed != file->size)
-        return reader_fail(zip->reader, "'%s' has two sizes", file->name);
+        return reader_fail(zip->reader, "'%s' has two different sizes", file->name);
     if (file->method == DEFLATED && file->size > zip->budget)
         return reader_fail(zip->reader,
                            "'%s' unpacks to %llu bytes: expected at most %d times the archive's "
-                           "size and %d MiB in all, or a stored file",
+                           "size plus %d MiB in all, or an uncompressed file",
                            file->name, (unsigned long long)file->size, ZIP_MOST_TIMES,
                            ZIP_MOST_TIMES);
     return RESULT_OK;

@@ -316,7 +316,7 @@ static Result add_tile(LightRun *run, const LightCase *lit, const Image *light, 
     if (light->width != tile->width / run->sheet.columns ||
         light->height != tile->height / run->sheet.rows)
         return error_set(error, RESULT_BAD_INPUT,
-                         "--picture: %s is %dx%d: expected cases of one size, and images of it",
+                         "--picture: %s is %dx%d: expected the same size for all cases and images",
                          lit->name, light->width, light->height);
     TRY(find_exposure(lit, &exposure, error));
     Result result = expose(light, exposure, name, &shown, error);

@@ -143,7 +143,7 @@ static Result read_found(LightCases *cases, const glob_t *found, const char *nam
         bool wanted = has_name(names, lit->name);
         if (wanted && lit->blocks[LIGHT_ONE]) continue;
         if (!lit->blocks[LIGHT_ONE])
-            fprintf(stderr, "%s: no case, there is no %s\n", lit->scene, lit->table);
+            fprintf(stderr, "%s: not a case: there is no %s\n", lit->scene, lit->table);
         destroy_case(lit);
         --cases->count;
     }

@@ -30,8 +30,10 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
     TRY(bench_options_one_algo(arguments, error));
     options.algo = arguments->method.algo, options.variant = *variant ? variant : NULL;
     if (*arguments->method.settings)
-        return error_set(error, RESULT_USAGE, "stress: draws %s itself, or takes it from --case",
-                         arguments->method.settings);
+        return error_set(
+            error, RESULT_USAGE,
+            "stress: %s: the stress test draws it at random: expected --case to set it",
+            arguments->method.settings);
     return stress_search(gpu, &options, &arguments->output, stdout, error);
 }
 

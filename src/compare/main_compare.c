@@ -216,8 +216,8 @@ static Result check_platform(const Command *command, Error *error)
                          command->platform);
     if (command->level && !level_counts(command->level, command->platform, command->any_platform))
         return error_set(error, RESULT_USAGE,
-                         "--level common: does not count for the GPU %s: expected platform, class, "
-                         "or --any-platform",
+                         "--level common: goldens for all platforms are not used for the GPU %s: "
+                         "expected --level platform or class, or --any-platform with it",
                          command->platform);
     return RESULT_OK;
 }
@@ -245,7 +245,7 @@ static Result check_reports(const Command *command, Error *error)
     for (int i = 0; i < 2; ++i)
         if (images[i]) TRY(outfile_refuse_terminal(images[i], error));
     if (count_to_stdout(command) <= 1) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "%d reports to standard output: expected one",
+    return error_set(error, RESULT_USAGE, "%d reports to standard output: expected at most one",
                      count_to_stdout(command));
 }
 
@@ -300,8 +300,8 @@ static Result check_shrink(const Command *command, const Command *before, Error 
         if (option->place == AT(shrink) || option->place == AT(quiet)) continue;
         if (memcmp((const char *)command + option->place, (const char *)before + option->place,
                    sizes[option->kind]) != 0)
-            return error_set(error, RESULT_USAGE,
-                             "--%s: it has no effect: --shrink compares nothing", option->name);
+            return error_set(error, RESULT_USAGE, "--%s: has no effect: --shrink compares nothing",
+                             option->name);
     }
     return RESULT_OK;
 }

@@ -365,8 +365,8 @@ static Result give_mask(PairList *list, const Side *masks, const char *name, int
     }
     if (found || !all) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s: the mask %s belongs to no image: expected the %s", masks->text, name,
-                     masks->kind == KIND_PATTERN ? "number of one" : "name of one");
+                     "%s: no image belongs to the mask %s: expected the %s of an image",
+                     masks->text, name, masks->kind == KIND_PATTERN ? "number" : "name");
 }
 
 static Result give_masks(PairList *list, const Side *masks, bool all, Error *error)

@@ -133,7 +133,7 @@ static Result read_mask(Mask *own, const Mask **mask, const Pair *pair, const Im
     }
     if ((*mask)->width == a->width && (*mask)->height == a->height) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s: a mask of %d x %d pixels: expected %d x %d as %s has", pair->mask,
+                     "%s: a mask of %d x %d pixels: expected %d x %d, the size of %s", pair->mask,
                      (*mask)->width, (*mask)->height, a->width, a->height, pair->a);
 }
 
@@ -192,7 +192,7 @@ static void find(Verdict *verdict, const Pair *pair, const VerdictOptions *optio
         snprintf(verdict->text, sizeof verdict->text, "no %s%s", pair->has_a ? pair->b : pair->a,
                  pair->has_a || !pair->not_for_gpus
                      ? ""
-                     : "; that of all platforms counts for a GPU only with --any-platform");
+                     : "; the golden for all platforms is used for GPUs only with --any-platform");
     if (!pair->has_b || (!pair->has_a && !options->update)) return;
     Result result = float_image_read_image(&b, pair->b, &error);
     if (result != RESULT_OK) {

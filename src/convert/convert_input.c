@@ -122,7 +122,7 @@ static Result read_hair(CacheStrands *strands, Error *error)
 {
     Counts counts = count_all(&strands->cache.hair, &strands->section_count);
     if (!counts.good)
-        return refuse_cache(strands, "its hair is not what docs/cache.md says", error);
+        return refuse_cache(strands, "its hair does not have the layout of docs/cache.md", error);
     if (is_too_much(strands, &counts))
         return refuse_cache(strands, "its hair has more vertices than a file of its size can hold",
                             error);
@@ -216,8 +216,8 @@ static Result check_whole(const ConvertInput *input, Error *error)
     int last = input->numbered ? target_find_numbers(&input->pattern).last : -1;
     if (input->cached && !cache->finished)
         return error_set(error, RESULT_FAILED,
-                         "%s: unfinished or cut off, %u whole frames: expected a whole cache, "
-                         "--partial or --last N",
+                         "%s: unfinished or cut off after %u complete frames: expected a complete "
+                         "cache, --partial or --last N",
                          input->paths[0], cache->frame_count);
     if (last > input->last && input->last >= input->first)
         return error_set(error, RESULT_FAILED,

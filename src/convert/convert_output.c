@@ -52,8 +52,8 @@ Result convert_output_open(ConvertOutput *output, int frame_count, Error *error)
         output->target.kind = TARGET_VIDEO;
     if (output->target.kind == TARGET_STILL && frame_count > 1)
         return error_set(error, RESULT_USAGE,
-                         "%s: one name for %d frames, put the frame number into it, x_%%04d%s, "
-                         "or write .usda, .abc or .npz",
+                         "%s: one file name for %d frames: expected a frame number in the name "
+                         "(x_%%04d%s), or .usda, .abc or .npz",
                          output->path, frame_count, suffix_of(output->path));
     return target_prepare(&output->target, error);
 }

@@ -149,7 +149,7 @@ static Result pick(const ConvertStep *step, Strands *strands, Error *error)
     Result result = strands_pick(strands, which, count, error);
     free(which);
     if (result == RESULT_OK && count == 0)
-        result = error_set(error, RESULT_FAILED, "no strand is as long as %g m: --min-length",
+        result = error_set(error, RESULT_FAILED, "--min-length %g: no strand is that long",
                            step->number);
     return result;
 }

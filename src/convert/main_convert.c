@@ -201,15 +201,16 @@ static Result check_sense(const Command *command, int files, Error *error)
     if (files == 0)
         return error_set(error, RESULT_USAGE, "no input: expected a hair file or a cache");
     if (!command->output && to)
-        return error_set(error, RESULT_USAGE,
-                         "--to-unit, --to-up, --format and --width have no effect: there is no -o");
+        return error_set(
+            error, RESULT_USAGE,
+            "--to-unit, --to-up, --format and --width have no effect: expected -o with them");
     if (!command->output && !command->stats && !command->json && command->steps.count)
         return error_set(error, RESULT_USAGE,
-                         "--%s: it has no effect: there is neither -o, --stats nor --json",
+                         "--%s: has no effect without output: expected -o, --stats or --json",
                          command->steps.step[0].option->name);
     if (!command->mesh && (command->mesh_unit || command->mesh_up))
         return error_set(error, RESULT_USAGE,
-                         "--mesh-unit and --mesh-up have no effect: there is no --mesh");
+                         "--mesh-unit and --mesh-up have no effect: expected --mesh with them");
     return RESULT_OK;
 }
 
@@ -219,11 +220,11 @@ static Result check_mesh(const Job *job, Error *error)
     const Command *command = &job->command;
     const char *step = convert_steps_need_mesh(&job->steps);
     if (step && !command->mesh)
-        return error_set(error, RESULT_USAGE, "--%s: expected the mesh: --mesh FILE", step);
+        return error_set(error, RESULT_USAGE, "--%s: expected --mesh FILE with it", step);
     if (command->mesh && !step && !command->stats && !command->json)
         return error_set(error, RESULT_USAGE,
-                         "--mesh: it has no effect: there is neither --fit, --attach, --push-out, "
-                         "--stats nor --json");
+                         "--mesh: has no effect: expected --fit, --attach, --push-out, --stats or "
+                         "--json with it");
     return RESULT_OK;
 }
 

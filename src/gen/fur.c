@@ -54,7 +54,8 @@ static Result count_strands(Farm *farm, Error *error)
     }
     if (!(count >= 1.0 && count <= 2e6 && count * recipe->vertices < (double)(1u << 30)))
         return error_set(error, RESULT_USAGE,
-                         "%.0f strands of %d vertices on %s: expected 1 to 2000000 of 2^30 in all",
+                         "%.0f strands of %d vertices on %s: expected 1 to 2000000 strands with at "
+                         "most 2^30 vertices in all",
                          count, recipe->vertices, farm->name);
     farm->count = (uint32_t)count;
     return RESULT_OK;
@@ -136,8 +137,9 @@ static Result grow_all(Farm *farm, Strands *strands, FurReport *report, Error *e
         FurWeave weave;
         double length = find_length(farm, root, &random);
         if (isnan(length))
-            return error_set(error, RESULT_USAGE, "--length-map is no number at %.3g, %.3g, %.3g",
-                             root->place[0], root->place[1], root->place[2]);
+            return error_set(error, RESULT_USAGE,
+                             "--length-map is not a number at %.3g, %.3g, %.3g", root->place[0],
+                             root->place[1], root->place[2]);
         if (length < 1e-3 * recipe->length) continue;
         surface_normal(&farm->surface, root, normal);
         fur_weave_create(&weave, recipe, &farm->guides, s < farm->guides.count ? s : FUR_NO_GUIDE,

@@ -132,7 +132,7 @@ static Result check_effect(const Command *command, Error *error)
         "curl-radius", "curl-turns", "curl-disorder", NULL};
     const char *curl = find_given(command, CURLS), *shaping = find_given(command, SHAPING);
     if (curl && command->kind >= 0 && command->kind != STRANDS_STYLE_CURLS)
-        return error_set(error, RESULT_USAGE, "--%s: it has no effect: --kind is %s", curl,
+        return error_set(error, RESULT_USAGE, "--%s: has no effect: --kind is %s", curl,
                          KIND_NAMES[command->kind]);
     if (command->set >= 0 && shaping)
         return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",

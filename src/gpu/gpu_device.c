@@ -120,6 +120,7 @@ void gpu_device_explain(const char *dev, Error *why)
                   "capability 'graphics')",
                   node);
     } else if (find_node(dev, "nvidiactl", node)) {
-        error_set(why, RESULT_NO_GL, "%s is there, but no GPU beside it", node);
+        error_set(why, RESULT_NO_GL,
+                  "%s is there, but there is no device file of a GPU (/dev/nvidia0)", node);
     }
 }

@@ -151,8 +151,7 @@ static Result choose_channels(Picture *picture, Error *error)
     TRY_EXR(picture, exr_get_channels(picture->stream.context, EXR_PART, &list));
     if (!take_any_layer(picture, list) && !take_grey(picture, list))
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: no channels of a colour: expected R, G and B, or Y alone",
-                         picture->path);
+                         "%s: no colour channels: expected R, G and B, or Y alone", picture->path);
     for (int i = 0; i < list->num_channels; ++i)
         if ((list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1) &&
             is_taken(picture, list->entries[i].name.str))
@@ -201,8 +200,8 @@ static Result make_image(Picture *picture, Error *error)
              most = READ_MAX_FACTOR * (uint64_t)picture->stream.read->size + READ_SURE_BYTES;
     if (size > most || chunk > most - size)
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: %lld x %lld pixels in %zu bytes: expected no more than %d times its "
-                         "size and %d MiB",
+                         "%s: %lld x %lld pixels in a file of %zu bytes: expected pixels of at "
+                         "most %d times the file's size plus %d MiB",
                          picture->path, width, height, picture->stream.read->size, READ_MAX_FACTOR,
                          READ_SURE_BYTES >> 20);
     TRY(image_create_kind(&picture->image, (int)width, (int)height, channels, IMAGE_FLOAT, error));

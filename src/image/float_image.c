@@ -19,10 +19,9 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
     TRY(bytes_read_file(&file, path, error));
     if (jpeg_is(&file)) {
         bytes_destroy(&file);
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%s: a JPEG file, which has lost what is measured: expected PNG, EXR or "
-                         "PFM",
-                         path);
+        return error_set(
+            error, RESULT_BAD_INPUT,
+            "%s: a JPEG file, whose compression changes pixels: expected PNG, EXR or PFM", path);
     }
     bool is_pfm = file.size > 1 && file.data[0] == 'P' && (file.data[1] | 0x20) == 'f';
     Result result = is_pfm               ? pfm_decode(image, &file, path, error)

@@ -48,7 +48,7 @@ Result jpeg_encode(const Image *image, int quality, Bytes *jpeg, Error *error)
     *jpeg = (Bytes){0};
     if (image->kind != IMAGE_8 || image->channels != 3)
         return error_set(error, RESULT_FAILED,
-                         "JPEG holds 8 bits without transparency: expected such an image");
+                         "expected an image of 8 bits without transparency: JPEG stores no other");
     if (image->width > MOST_PX || image->height > MOST_PX)
         return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for JPEG",
                          image->width, image->height);

@@ -335,8 +335,8 @@ static Result make_image(Codec *codec, const char *path, Error *error)
     size_t size = image_size(image), most = READ_MAX_FACTOR * codec->size + READ_SURE_BYTES;
     if (size > most)
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: %d x %d pixels in %zu bytes: expected no more than %d times its size "
-                         "and %d MiB",
+                         "%s: %d x %d pixels in a file of %zu bytes: expected pixels of at most %d "
+                         "times the file's size plus %d MiB",
                          path, image->width, image->height, codec->size, READ_MAX_FACTOR,
                          READ_SURE_BYTES >> 20);
     image->pixels = malloc(size);

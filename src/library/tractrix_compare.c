@@ -24,7 +24,7 @@ static Result take_limits(CompareLimits *limits, const TractrixLimits *asked, Er
                          "limits.pixels_per_degree: got %g, expected 1 to 1000", distance);
     if (!pixels && !flip)
         return error_set(error, RESULT_USAGE,
-                         "limits: neither pixels nor FLIP count: expected one");
+                         "limits: no limit is set: expected one of pixels or of FLIP");
     *limits = (CompareLimits){.pixels_matter = pixels,
                               .pixel_tolerance = own.pixel_tolerance,
                               .max_failing = own.max_failing_percent,

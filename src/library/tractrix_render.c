@@ -198,9 +198,9 @@ TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *v
     if (result == RESULT_OK &&
         (to.width != renderer->image.width || to.height != renderer->image.height ||
          KINDS[to.format] != renderer->image.kind))
-        result =
-            error_set(&why, RESULT_USAGE, "image: has not the renderer's size %dx%d and format",
-                      renderer->image.width, renderer->image.height);
+        result = error_set(&why, RESULT_USAGE,
+                           "image: expected the renderer's size, %dx%d, and its format",
+                           renderer->image.width, renderer->image.height);
     DrawCall call = {renderer, view};
     THEN(result, library_on_device(renderer->simulation->device, draw, &call, &why));
     if (result == RESULT_OK) library_put_image(&to, &renderer->image);

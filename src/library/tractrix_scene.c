@@ -437,7 +437,8 @@ static Result set_mesh(TractrixScene *scene, const TractrixMesh *asked, Error *e
     Mesh mesh = {0};
     if (scene->scene.body_count > 1)
         return error_set(error, RESULT_USAGE,
-                         "mesh: the scene has %u bodies, each with a mesh of its own: expected one",
+                         "mesh: the scene has %u bodies, each with a mesh of its own: expected a "
+                         "scene of one body",
                          scene->scene.body_count);
     if (!asked) return set(scene, -1, "mesh", "", error);
     TRY(library_take(&from, sizeof from, asked, sizeof from, "mesh", error));

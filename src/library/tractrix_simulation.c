@@ -69,7 +69,7 @@ static void warn(const Scene *scene, const Assets *assets, FILE *messages)
         if (caution)
             fprintf(messages, "%s: algo %s: %s\n", name.text, section->params.algo, caution);
         if (!section->params.hidden && follow_plan_fills(&section->params, &assets->strands[i]))
-            fprintf(messages, "%s: followers fill between %u strands\n", name.text,
+            fprintf(messages, "%s: followers fill the space between %u strands\n", name.text,
                     assets->strands[i].strand_count);
     }
 }
@@ -221,9 +221,10 @@ static Result check_pose(const TractrixSimulation *simulation, const TractrixPos
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     TRY(check_drive(simulation, error));
     if (simulation->scene.body_count > 1)
-        return error_set(error, RESULT_USAGE,
-                         "head: the scene has %u bodies, which move as it says: expected NULL",
-                         simulation->scene.body_count);
+        return error_set(
+            error, RESULT_USAGE,
+            "head: the scene has %u bodies, whose motion the scene gives: expected NULL",
+            simulation->scene.body_count);
     if (simulation->scene.bodies[0].shape)
         return error_set(error, RESULT_USAGE,
                          "head: the mesh deforms: expected NULL, or tractrix_simulation_"

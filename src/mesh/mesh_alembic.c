@@ -77,10 +77,11 @@ static void open_all(AbcMeshes *all, MeshSamples *samples)
     }
     file->reader->at = 0;
     if (reader_ok(file->reader) && all->count == 0)
-        reader_fail(file->reader,
-                    curves
-                        ? "hair, no mesh that is shown: a hair file stands alone, not behind --mesh"
-                        : "no mesh that is shown");
+        reader_fail(
+            file->reader,
+            curves
+                ? "hair, and no visible mesh: expected a mesh; a hair file is given without --mesh"
+                : "no visible mesh");
 }
 
 // --- Faces.

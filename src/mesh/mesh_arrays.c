@@ -76,7 +76,7 @@ static void take_number(double *number, Reader *reader, const NpyArray *array, c
 {
     double value = npy_array_is_number(array) && array->count == 1 ? npy_array_number(array, 0) : 0;
     if (!(value >= 1e-9 && value <= 1e9))
-        reader_fail(reader, "'%s' is no single number from 1e-9 to 1e9", name);
+        reader_fail(reader, "'%s': expected one number from 1e-9 to 1e9", name);
     else
         *number = value;
 }
@@ -87,7 +87,7 @@ static void take_up(MeshSamples *samples, Reader *reader, const NpyArray *array)
     bool text = !npy_array_is_number(array) && array->count == 1 && array->item == wide;
     char c = text ? (char)array->data[array->big ? wide - 1 : 0] : 0;
     if (!c || !strchr("yzYZ", c))
-        reader_fail(reader, "'up' is neither 'y' nor 'z'");
+        reader_fail(reader, "'up': expected 'y' or 'z'");
     else
         samples->up_z = c == 'z' || c == 'Z';
 }

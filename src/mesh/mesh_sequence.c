@@ -28,7 +28,7 @@ bool mesh_samples_create(MeshSamples *samples, Reader *reader)
         return reader_fail(reader, "%llu samples of %llu vertices: expected at least one of each",
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
     if (count > UINT32_MAX / 2 || vertices > UINT32_MAX / 4 || vertices > MOST_VERTICES / count)
-        return reader_fail(reader, "%llu samples of %llu vertices are beyond all memory",
+        return reader_fail(reader, "%llu samples of %llu vertices do not fit into memory",
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
     samples->position = malloc(count * vertices * sizeof *samples->position);
     return samples->position || reader_fail_memory(reader) == RESULT_OK;
@@ -123,7 +123,7 @@ static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *ta
     THEN(result, mesh_read(mesh, than, unit, up_z, error));
     size_t count = (size_t)(last - first) + 1, vertices = mesh->vertex_count;
     if (result == RESULT_OK && vertices > MOST_VERTICES / count)
-        result = error_set(error, RESULT_BAD_INPUT, "%s: %zu samples are beyond all memory", than,
+        result = error_set(error, RESULT_BAD_INPUT, "%s: %zu samples do not fit into memory", than,
                            count);
     if (result == RESULT_OK) {
         sequence->times.count = (uint32_t)count;
@@ -195,9 +195,9 @@ static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, cons
 {
     bool own = samples->triangle != NULL;
     if (!own && !rest->vertex_count)
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%s: it has no faces: expected an OBJ or PLY file with them (--mesh-rest)",
-                         path);
+        return error_set(
+            error, RESULT_BAD_INPUT,
+            "%s: has no faces: expected --mesh-rest with an OBJ or PLY file that has them", path);
     uint64_t triangles = own ? samples->triangle_count : rest->triangle_count;
     if (triangles == 0 || triangles > UINT32_MAX / 8)
         return error_set(error, RESULT_BAD_INPUT, "%s: %llu triangles", path,

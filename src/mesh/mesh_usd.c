@@ -92,8 +92,8 @@ static void add_mesh(UsdMeshes *all, UsdMesh *mesh)
     if (usd_stage_instances(&all->stage, mesh->prim))
         reader_fail(reader, "meshes of a PointInstancer are not read: %s", USD_FLATTEN);
     if (mesh->skinned && !mesh->points.timed)
-        reader_fail(reader, "a mesh that a skeleton moves: expected its points at each time, "
-                            "points.timeSamples, as baked by what wrote it");
+        reader_fail(reader, "a mesh that a skeleton moves: expected baked points "
+                            "(points.timeSamples), from the program that exported it");
     UsdMesh *more = realloc(all->mesh, ((size_t)all->count + 1) * sizeof *more);
     if (!more) {
         reader_fail_memory(reader);
@@ -255,10 +255,11 @@ static void read(MeshSamples *samples, Reader *reader)
     UsdMeshes all = {.reader = reader};
     usd_stage_read(&all.stage, reader, &MESHES, &all);
     if (reader_ok(reader) && all.count == 0)
-        reader_fail(reader, all.left_out ? "no Mesh prim that is shown"
-                            : all.curves
-                                ? "hair, not a mesh: a hair file stands alone, not behind --mesh"
-                                : "no Mesh prim with points");
+        reader_fail(reader,
+                    all.left_out ? "no visible Mesh prim"
+                    : all.curves
+                        ? "hair, not a mesh: expected a mesh; a hair file is given without --mesh"
+                        : "no Mesh prim with points");
     if (reader_ok(reader)) make_samples(&all, samples);
     samples->unit = (double)all.stage.unit;
     samples->up_z = all.stage.up_z;

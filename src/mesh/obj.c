@@ -212,7 +212,7 @@ static void read_statements(Obj *obj)
         reader_skip_line(reader);
     }
     if (reader_ok(reader) && obj->triangles[0].count == 0)
-        reader_fail(reader, "no faces: expected a mesh; hair stands alone, not behind --mesh");
+        reader_fail(reader, "no faces: expected a mesh; a hair file is given without --mesh");
     for (int kind = 0; kind < KIND_COUNT && reader_ok(reader); kind++) {
         if (obj->largest[kind] <= obj->vectors[kind].count) continue;
         reader->line = obj->largest_at[kind];

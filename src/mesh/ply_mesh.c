@@ -108,9 +108,10 @@ static void read_elements(PlyMesh *ply, float unit, bool up_z)
                 ply_read_row(&ply->file, element, unused);
     }
     if (reader_ok(reader) && ply->triangles == 0)
-        reader_fail(reader, strands
-                                ? "hair, not a mesh: a hair file stands alone, not behind --mesh"
-                                : "no faces: expected a mesh");
+        reader_fail(reader,
+                    strands
+                        ? "hair, not a mesh: expected a mesh; a hair file is given without --mesh"
+                        : "no faces: expected a mesh");
     if (reader_ok(reader) && ply->triangles > UINT32_MAX / 8)
         reader_fail(reader, "%zu triangles", ply->triangles);
 }

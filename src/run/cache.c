@@ -188,7 +188,7 @@ Result cache_file_check(const CacheFile *cache, int last, Error *error)
     char range[32] = "none";
     if (cache->frame_count) snprintf(range, sizeof range, "0 to %u", cache->frame_count - 1);
     bool ended = cache->end.text[0] == 0;
-    return error_set(error, RESULT_BAD_INPUT, "%s: no frame %d, whole ones: %s%s%s",
+    return error_set(error, RESULT_BAD_INPUT, "%s: no frame %d: complete frames: %s%s%s",
                      cache->file.path, last, range, ended ? "" : "; ",
                      ended ? "" : without_path(cache, &cache->end));
 }
@@ -250,8 +250,9 @@ Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS
     if (short_of_memory)
         return error_set(error, RESULT_FAILED, "%s: no memory for frame %d", cache->file.path,
                          frame);
-    return error_set(error, RESULT_BAD_INPUT, "%s: frame %d at byte %llu is no frame of this hair",
-                     cache->file.path, frame, (unsigned long long)cache->offsets[frame]);
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%s: frame %d at byte %llu does not fit the cache's hair", cache->file.path,
+                     frame, (unsigned long long)cache->offsets[frame]);
 }
 
 // --- Writing.
@@ -286,7 +287,7 @@ static Result check_kind(const CacheWriter *writer, int descriptor, Error *error
         return RESULT_OK;
     if (got < 0) return fail_to_write(writer, errno, error);
     return error_set(error, RESULT_FAILED,
-                     "%s: is no cache and stays as it is: expected a cache, or a new name",
+                     "%s: is not a cache, so it is not overwritten: expected a cache or a new name",
                      writer->path);
 }
 
@@ -324,7 +325,7 @@ static Result open_stream(CacheWriter *writer, const char *path, const Simulatio
         return fail_to_write(writer, ENOMEM, error);
     }
     if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-        return error_set(error, RESULT_FAILED, "%s: another process is writing it", path);
+        return error_set(error, RESULT_FAILED, "%s: another process is writing this file", path);
     return check_kind(writer, descriptor, error);
 }
 

@@ -70,7 +70,7 @@ typedef struct CacheWriter {
 } CacheWriter;
 
 // Creates the file, or empties an existing cache. RESULT_FAILED with path and reason, also for a
-// file of another kind, which is not changed, and if another process is writing it.
+// file of another kind, which is not changed, and if another process is writing this file.
 Result cache_writer_open(CacheWriter *writer, const char *path, const Simulation *simulation,
                          const Strands *strands, Error *error);
 

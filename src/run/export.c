@@ -105,9 +105,10 @@ static bool is_npz(const char *text)
 static Result check_name(const Target *target, const char *text, int frame_count, Error *error)
 {
     if (target->kind != TARGET_STILL || frame_count == 1 || is_npz(text)) return RESULT_OK;
-    return error_set(error, RESULT_USAGE,
-                     "%s: one name for several frames, put the frame number into it: frame_%%04d%s",
-                     text, strrchr(text, '.'));
+    return error_set(
+        error, RESULT_USAGE,
+        "%s: one file name for several frames: expected a frame number in the name (frame_%%04d%s)",
+        text, strrchr(text, '.'));
 }
 
 // Sets the options of a file for the frames first, first + every, ...

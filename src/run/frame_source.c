@@ -108,8 +108,8 @@ static bool find_state(FrameSource *source, FILE *messages, Error *error)
         return true;
     }
     if (result == RESULT_OK)
-        error_set(error, result, "%s: is of frame %d, the cache ends before", source->state_path,
-                  frame);
+        error_set(error, result, "%s: is the state after frame %d, but the cache ends before it",
+                  source->state_path, frame);
     if (messages) fprintf(messages, "%s: simulating again from the start\n", error->text);
     bytes_destroy(&source->state);
     return false;
@@ -135,7 +135,7 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
 {
     CacheReader *reader = &source->reader;
     if (cache_file_is_stub(path)) {
-        if (messages) fprintf(messages, "%s: no frames yet: simulating from the start\n", path);
+        if (messages) fprintf(messages, "%s: has no frames yet: simulating from the start\n", path);
         return begin_cache(source, path, error);
     }
     TRY(cache_reader_open(reader, path, source->simulation, source->strands, error));
@@ -143,7 +143,7 @@ static Result resume_cache(FrameSource *source, const char *path, int last, FILE
     if (!cache_file_verify(&reader->cache) && messages)
         fprintf(messages, "%s\n", reader->cache.end.text);
     if (messages)
-        fprintf(messages, "%s: %u frames are there\n", quote(path).text, reader->cache.frame_count);
+        fprintf(messages, "%s: has %u frames\n", quote(path).text, reader->cache.frame_count);
     if ((int)reader->cache.frame_count > last) {
         source->played = (int)reader->cache.frame_count;
         if (!reader->cache.finished) TRY(complete_cache(source, error));

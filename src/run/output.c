@@ -241,12 +241,13 @@ static Result check_options(const OutputOptions *options, const Target *target, 
                          : target->format == TARGET_JPEG ? "JPEG"
                                                          : NULL;
     if (opaque && options->channels == 4)
-        return error_set(error, RESULT_USAGE,
-                         "%s: %s cannot hold a transparent background, write .webm or PNG frames",
-                         options->target, opaque);
+        return error_set(
+            error, RESULT_USAGE,
+            "%s: %s cannot hold a transparent background: expected .webm or PNG frames",
+            options->target, opaque);
     if (target->floats != (options->kind == IMAGE_FLOAT) ||
         (target->format >= TARGET_JPEG && options->kind != IMAGE_8))
-        return error_set(error, RESULT_USAGE, "%s: cannot store images of this depth",
+        return error_set(error, RESULT_USAGE, "%s: this format cannot store images of this depth",
                          options->target);
     if (options->channels != 3 && options->channels != 4)
         return error_set(error, RESULT_USAGE, "%s: frames of %d channels, expected 3 or 4",

@@ -95,9 +95,11 @@ Result record_compare(const Record *record, int frame, const char *name, const c
     const RecordLine *line = &record->lines[frame];
     TRY(find_checksum(&checksum, name, why));
     if (!*line->fingerprint)
-        return error_set(why, RESULT_FAILED, "%.300s: no record of the scene that it shows", name);
+        return error_set(why, RESULT_FAILED, "%.300s: there is no record of how it was rendered",
+                         name);
     if (line->checksum != checksum)
-        return error_set(why, RESULT_FAILED, "%.300s: has changed since it was recorded", name);
+        return error_set(why, RESULT_FAILED, "%.300s: was changed after it was rendered", name);
     if (strcmp(line->fingerprint, fingerprint) == 0) return RESULT_OK;
-    return error_set(why, RESULT_FAILED, "%.300s: other parameters or other files", name);
+    return error_set(why, RESULT_FAILED, "%.300s: was made with other parameters or input files",
+                     name);
 }

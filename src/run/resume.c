@@ -40,12 +40,12 @@ Result resume_check(const RunParams *run, Error *error)
     Result result = parse_targets(&images, &hair, run, error);
     if (result == RESULT_OK && !*run->cache && (is_whole(&images) || is_whole(&hair)))
         result = error_set(error, RESULT_USAGE,
-                           "--resume: %s: it is written in one piece; with --cache at least its "
-                           "simulation can be resumed",
+                           "--resume: %s: is written in one piece: expected one file per frame, or "
+                           "--cache to resume the simulation",
                            is_whole(&images) ? run->output : run->export);
     if (result == RESULT_OK && images.before && images.format == TARGET_JPEG)
         result = error_set(error, RESULT_USAGE,
-                           "--resume: %s: a JPEG file does not say which scene it shows: expected "
+                           "--resume: %s: a JPEG file does not say how it was rendered: expected "
                            "PNG",
                            run->output);
     target_destroy(&images);
@@ -100,7 +100,7 @@ static Result compare_texts(const Search *search, const ImageTexts *texts, int f
     if (search->image_record.lines)
         return record_compare(&search->image_record, frame, name, expected, why);
     if (!scene)
-        return error_set(why, RESULT_FAILED, "%.300s: does not say which scene it shows", name);
+        return error_set(why, RESULT_FAILED, "%.300s: does not say how it was rendered", name);
     for (size_t i = 0; i < FINGERPRINT_ORIGIN_COUNT; ++i) {
         const char *was = image_texts_find(texts, FINGERPRINT_ORIGIN[i]);
         const char *is = image_texts_find(&search->fingerprint->origin, FINGERPRINT_ORIGIN[i]);
@@ -108,7 +108,8 @@ static Result compare_texts(const Search *search, const ImageTexts *texts, int f
             return refuse(name, why, "was drawn by", was ? was : "something else", is ? is : "");
     }
     if (strcmp(scene, expected) == 0) return RESULT_OK;
-    return error_set(why, RESULT_FAILED, "%.300s: other parameters or other files", name);
+    return error_set(why, RESULT_FAILED, "%.300s: was made with other parameters or input files",
+                     name);
 }
 
 // RESULT_OK if the file exists and has what this run would write.
@@ -142,7 +143,7 @@ static Result compare_hair(const Search *search, int frame, const char *name, Er
     fingerprint_of_hair(expected, search->fingerprint, frame);
     if (search->hair_record.lines)
         return record_compare(&search->hair_record, frame, name, expected, why);
-    return error_set(why, RESULT_FAILED, "%.300s: no record of the scene that it shows", name);
+    return error_set(why, RESULT_FAILED, "%.300s: there is no record of how it was rendered", name);
 }
 
 // Whether the frame's file of this target is done. False also if memory is short.

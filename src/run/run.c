@@ -103,7 +103,7 @@ static Result check_target(const RunParams *run, const char *path,
                            "--stats -: images go to standard output: expected a file");
     if (result == RESULT_OK && target.kind == TARGET_VIDEO && run->part[1] > 1)
         result = error_set(error, RESULT_USAGE,
-                           "--part: %s holds all frames, expected a file for each", path);
+                           "--part: %s holds all frames: expected one file per frame", path);
     target_destroy(&target);
     return result;
 }
@@ -169,7 +169,8 @@ static Result find_done(Run *run, Error *error)
     TRY(resume_find(done, params, sequence_last_frame(params), &run->fingerprint, error));
     if (params->quiet) return RESULT_OK;
     if (done->count)
-        fprintf(stderr, "%d of %d frames are there\n", done->count, sequence_count_drawn(params));
+        fprintf(stderr, "%d of %d frames are already written\n", done->count,
+                sequence_count_drawn(params));
     if (done->stale)
         fprintf(stderr, "%d existing file%s will be written again: %s\n", done->stale,
                 done->stale == 1 ? "" : "s", done->why.text);
@@ -252,7 +253,9 @@ static void report_filled(const Run *run)
         const Section *section = &run->scene.sections[i];
         const Strands *strands = &run->assets.strands[i];
         if (section->params.hidden || !follow_plan_fills(&section->params, strands)) continue;
-        fprintf(stderr, "%s: %u followers fill between %u strands: --followers says otherwise\n",
+        fprintf(stderr,
+                "%s: %u followers fill the space between %u strands: set --followers to change "
+                "their number\n",
                 quote(section->file).text, run->simulation.sections[i].follow.hair.strand_count,
                 strands->strand_count);
     }
@@ -336,7 +339,7 @@ static void report_result(const Run *run, const Sequence *sequence, double ms)
                              : run->simulation.frame + 1;
     SolverReport report = simulation_report(&run->simulation);
     if (report.moves_limited && run->scene.run.verbose)
-        fprintf(stderr, "%llu moves of more than 100 strand lengths a step were cut\n",
+        fprintf(stderr, "%llu moves of vertices were shortened to 100 strand lengths a step\n",
                 (unsigned long long)report.moves_limited);
     const CacheWriter *cache = &run->source.writer;
     if (cache->frame_count && run->scene.run.verbose)

@@ -32,7 +32,8 @@ static Result check_allowance(const Scene *scene, Error *error)
     if (!scene->file || !scene->run.allow_paths || scene->origin[allow] == ORIGIN_FLAG)
         return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
-                     "%.300s: allow_paths: expected it on the command line only", scene->file);
+                     "%.300s: allow_paths: expected this option on the command line only",
+                     scene->file);
 }
 
 // The scene file if it, not the command line, names this output. Such an output must stay in the

@@ -88,12 +88,14 @@ static const Format *find_format(const char *path)
 static Result check_options(const VideoOptions *options, const Format *format, Error *error)
 {
     if (!format)
-        return error_set(error, RESULT_USAGE, "%s: a video's name ends in .mp4, .webm or .gif",
+        return error_set(error, RESULT_USAGE,
+                         "%s: expected a video's name, which ends in .mp4, .webm or .gif",
                          options->path);
     if (options->channels == 4 && !format->has_alpha)
-        return error_set(error, RESULT_USAGE,
-                         "%s: %s cannot hold a transparent background, write .webm or PNG frames",
-                         options->path, format->suffix);
+        return error_set(
+            error, RESULT_USAGE,
+            "%s: %s cannot hold a transparent background: expected .webm or PNG frames",
+            options->path, format->suffix);
     if (!(options->fps > 0.0 && options->fps <= FPS_MAX))
         return error_set(error, RESULT_USAGE, "%s: %g frames a second, expected at most %g",
                          options->path, options->fps, FPS_MAX);
@@ -225,10 +227,10 @@ static Result start_ffmpeg(Video *video, const Format *format, const VideoOption
         reason = start(video, &command);
     free(command.output);
     if (reason == ENOENT)
-        return error_set(
-            error, RESULT_FAILED,
-            "%s: ffmpeg is not installed (Debian package ffmpeg), only PNG frames can be written",
-            options->path);
+        return error_set(error, RESULT_FAILED,
+                         "%s: ffmpeg is not installed: expected the Debian package ffmpeg, or PNG "
+                         "frames as output",
+                         options->path);
     if (reason != 0)
         return error_set(error, RESULT_FAILED, "%s: cannot start ffmpeg: %s", options->path,
                          strerror(reason));

@@ -171,7 +171,7 @@ static const char *find_reason(const ParamInfo *info, const Scene *scene, uint32
     for (size_t i = 0; i < sizeof EFFECTS / sizeof *EFFECTS; ++i)
         if (lists(EFFECTS[i].names, info->name) &&
             !EFFECTS[i].holds(scene, body, section, params)) {
-            snprintf(text, 80, "it has no effect: %s", EFFECTS[i].why);
+            snprintf(text, 80, "has no effect: %s", EFFECTS[i].why);
             return text;
         }
     return NULL;

@@ -77,22 +77,22 @@ static void suggest_unit(FILE *messages, const ScalpFit *fit, double unit)
         double metres;
     } named[] = {{"m", 1}, {"in", 0.0254}, {"cm", 0.01}, {"mm", 0.001}};
     double wanted = unit * HEAD_RADIUS[0] / fit->radius[0];
-    fprintf(messages, "the scalp is %.2g m wide, a head's %.2g m: --unit ", 2 * fit->radius[0],
+    fprintf(messages, "the scalp is %.2g m wide, a head's %.2g m: with --unit ", 2 * fit->radius[0],
             2 * HEAD_RADIUS[0]);
     for (size_t i = 0; i < sizeof named / sizeof *named; ++i)
         if (fabs(log(wanted / named[i].metres)) < log(UNLIKE)) {
-            fprintf(messages, "%s makes it one\n", named[i].word);
+            fprintf(messages, "%s it is as wide\n", named[i].word);
             return;
         }
-    fprintf(messages, "%.2g makes it one\n", wanted);
+    fprintf(messages, "%.2g it is as wide\n", wanted);
 }
 
 static void report(FILE *messages, const ScalpFit *fit, double unit, bool verbose)
 {
     if (fit->found)
         fprintf(messages,
-                "scalp: a head of %.3g x %.3g x %.3g m at %.3g, %.3g, %.3g, off the roots by "
-                "%.2g mm: --scalp none leaves it out\n",
+                "scalp: guessed a head of %.3g x %.3g x %.3g m at %.3g, %.3g, %.3g, %.2g mm from "
+                "the roots: --scalp none leaves it out\n",
                 2 * fit->radius[0], 2 * fit->radius[1], 2 * fit->radius[2], fit->centre[0],
                 fit->centre[1], fit->centre[2], 1e3 * fit->error);
     else if (verbose || fit->other_size)

@@ -116,8 +116,9 @@ static Result read_params(const Document *document, const Sink *sink, Origin ori
         const char *also = params_also(info);
         if (also && json_object_get(object, also) && info->scope == sink->scope) {
             if (json_object_get(object, key))
-                return json_fail(parent, error, "'%s' and '%s' are the same: expected one of them",
-                                 key, also);
+                return json_fail(
+                    parent, error,
+                    "'%s' and '%s' are two names of the same key: expected one of them", key, also);
             key = also;
         }
         const json_t *value = json_object_get(object, key);
@@ -200,12 +201,13 @@ static Result check_owner(const Scene *scene, const Document *document, size_t r
         PlaceOfSection of;
         find_place(&of, scene, document, i);
         place.parent = &of.section;
-        json_fail(&place, error, "algo '%.60s' has no such parameter: it is of %s",
+        json_fail(&place, error, "algo '%.60s' has no such parameter: it belongs to %s",
                   section->params.algo, info->owner);
         return RESULT_USAGE;
     }
     if (!shared || owned) return RESULT_OK;
-    json_fail(&place, error, "no section's algo has such a parameter: it is of %s", info->owner);
+    json_fail(&place, error, "no section's algo has such a parameter: it belongs to %s",
+              info->owner);
     return RESULT_USAGE;
 }
 
@@ -279,8 +281,8 @@ static Result read_list(Scene *scene, const Document *document, const json_t *ar
         return json_refuse(&place, array, "an array of 1 to 16 bodies", error);
     for (size_t i = 0; i < sizeof BESIDE / sizeof *BESIDE; i++)
         if (json_object_get(document->json, BESIDE[i]))
-            return json_fail(&document->root, error, "'%s' beside 'bodies': expected it in a body",
-                             BESIDE[i]);
+            return json_fail(&document->root, error,
+                             "'%s' beside 'bodies': expected this key in a body", BESIDE[i]);
     SceneBody first = scene->bodies[0];
     scene->bodies[0] = (SceneBody){0};
     Result result = RESULT_OK;

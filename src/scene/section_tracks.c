@@ -48,7 +48,7 @@ const char *section_tracks_refusal(const ParamInfo *info)
     case PARAM_AUTO_INT:
         return "it is a count, which is decided once, at the start";
     default:
-        return "it is no number, and decided once, at the start";
+        return "it is not a number, and it is decided once, at the start";
     }
 }
 

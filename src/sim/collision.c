@@ -49,7 +49,7 @@ static Result check_loops(const Collision *collision, bool software, Error *erro
         if (collision->colliders->count + (collision->field != NULL) > most)
             return error_set(error, RESULT_USAGE,
                              "colliders: %u for strands of %u vertices: expected at most "
-                             "%llu (more exceed the loops of a CPU driver)",
+                             "%llu (more exceed the loop limit of a CPU driver)",
                              collision->colliders->count, collision->hair->batches[i].vertex_count,
                              (unsigned long long)most);
     }

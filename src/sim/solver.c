@@ -149,8 +149,8 @@ static Result check_vertices(const SolverType *type, const SolverRecipe *recipe,
     for (uint32_t i = 0; i < hair->batch_count; ++i)
         if (recipe->most_vertices && hair->batches[i].vertex_count > recipe->most_vertices)
             return error_set(error, RESULT_USAGE,
-                             "%s: a strand of %u vertices: expected at most %u (longer ones exceed "
-                             "the loops of a CPU driver; rope takes more)",
+                             "%s: a strand of %u vertices: expected at most %u (longer strands "
+                             "exceed the loop limit of a CPU driver; rope takes more)",
                              type->name, hair->batches[i].vertex_count, recipe->most_vertices);
     return RESULT_OK;
 }

@@ -58,9 +58,9 @@ static void along(float texel[4], const void *block, const void *mean, const Sec
 static Result check(const SolverSetup *setup, Error *error)
 {
     if (is_bullet(setup->params) && setup->params->rope_compliance > 0)
-        return error_set(error, RESULT_USAGE,
-                         "rope_compliance: links of --variant bullet have none: expected "
-                         "--variant xpbd");
+        return error_set(
+            error, RESULT_USAGE,
+            "rope_compliance: --variant bullet has no compliance: expected --variant xpbd");
     return RESULT_OK;
 }
 

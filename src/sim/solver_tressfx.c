@@ -112,7 +112,7 @@ static Result check_loops(const SolverSetup *setup, Error *error)
         if (n * passes > MOST_ITERATIONS_ON_CPU)
             return error_set(error, RESULT_USAGE,
                              "tressfx: a strand of %u vertices: expected at most %lld with these "
-                             "iterations (longer ones exceed the loops of a CPU driver)",
+                             "iterations (longer strands exceed the loop limit of a CPU driver)",
                              n, (long long)(MOST_ITERATIONS_ON_CPU / passes));
     }
     return RESULT_OK;

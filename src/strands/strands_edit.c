@@ -274,10 +274,11 @@ Result strands_pick_group(Strands *strands, double group, Error *error)
         low = fminf(low, own), high = fmaxf(high, own);
         if ((double)own == group) which[count++] = s;
     }
-    Result result = count ? strands_pick(strands, which, count, error)
-                          : error_set(error, RESULT_BAD_INPUT,
-                                      "no strand is of group %g: expected one from %g to %g", group,
-                                      (double)low, (double)high);
+    Result result = count
+                        ? strands_pick(strands, which, count, error)
+                        : error_set(error, RESULT_BAD_INPUT,
+                                    "no strand belongs to group %g: expected a group from %g to %g",
+                                    group, (double)low, (double)high);
     free(which);
     return result;
 }

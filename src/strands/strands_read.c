@@ -192,7 +192,7 @@ static Result refuse_defects(const StrandsReport *report, const char *name, Erro
 {
     char text[900];
     if (!describe_first_defect(report, name, text, sizeof text)) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%s (refused: --strict)", text);
+    return error_set(error, RESULT_BAD_INPUT, "%s (refused because of --strict)", text);
 }
 
 // The report is not printed for a file without a usable strand, so this message names the first

@@ -147,7 +147,7 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
         lines++;
     }
     if (report->samples > 1 && !report->all_samples) {
-        fprintf(stream, "%s: of %u time samples only the first is read\n", quote(path).text,
+        fprintf(stream, "%s: only the first of %u time samples is read\n", quote(path).text,
                 report->samples);
         lines++;
     }
@@ -172,8 +172,8 @@ void strands_report_print_guess(const StrandsReport *report, const char *path, F
     if (unit) fprintf(stream, "a unit of %g m", (double)report->unit_used);
     fprintf(stream, "%s", unit && up ? " and " : "");
     if (up) fprintf(stream, "%c up", report->up_z ? 'z' : 'y');
-    fprintf(stream, ": %s%s%s say otherwise\n", unit ? "--unit" : "", unit && up ? " and " : "",
-            up ? "--up" : "");
+    fprintf(stream, ": set %s%s%s if this is wrong\n", unit ? "--unit" : "",
+            unit && up ? " and " : "", up ? "--up" : "");
 }
 
 bool strands_report_same_guess(const StrandsReport *a, const StrandsReport *b)
@@ -192,11 +192,13 @@ static void print_unit(const StrandsReport *report, FILE *stream)
     if (!report->unit_guessed)
         fprintf(stream, " as given\n");
     else if (format->centimetres && report->unit_used != 1.0f)
-        fprintf(stream, ", a guess: TressFX 2 assets are in centimetres (--unit says otherwise)\n");
+        fprintf(stream,
+                ", a guess: TressFX 2 assets are in centimetres (set --unit if it is wrong)\n");
     else
-        fprintf(stream, ", a guess by the size (--unit says otherwise)\n");
+        fprintf(stream, ", a guess by the size (set --unit if it is wrong)\n");
     fprintf(stream, "  up        %c%s\n", report->up_z ? 'z' : 'y',
-            report->up_guessed ? ", as such files have it (--up says otherwise)" : " as given");
+            report->up_guessed ? ", as usual in this format (set --up if it is wrong)"
+                               : " as given");
 }
 
 static void print_notes(const StrandsReport *report, FILE *stream)

@@ -42,7 +42,7 @@ table() {
 table 0.1 >"$work/own/one.csv"
 cp "$work/own/one.json" "$work/own/scene.json"
 run 1 light --reference "$work/own" --way none --frames 1 --picture "$work/own.png" --csv "$work/own_rows.csv"
-says "scene.json: no case"; says "bounds are broken"; is_png "$work/own.png"
+says "scene.json: not a case"; says "bounds are broken"; is_png "$work/own.png"
 same "$(field "$work/own_rows.csv" scene | tr '\n' ' ')" "one mean " "cases"
 
 claim "an image that is the tracer's has a mean of 1 and a rel of 0"
@@ -60,7 +60,7 @@ for channel in r g b; do
 done
 
 claim "files that are wrong end with 3 and one line behind that of the device"
-says_once() { same "$(grep -vc 'OpenGL\|: no case, ' "$work/err")" 1 "lines"; }
+says_once() { same "$(grep -vc 'OpenGL\|: not a case: ' "$work/err")" 1 "lines"; }
 broken() { run 3 light --reference "$work/own" --case one --way none --frames 1; says "$1"; says_once; }
 table 0.1 | head -4 >"$work/own/one.csv"; broken "one.csv: got 3 lines"
 { table 0.1 | head -4; echo 0,0,1,1,1,1,1,1,1; } >"$work/own/one.csv"; broken "one.csv:5: a second line for block 0, 0"

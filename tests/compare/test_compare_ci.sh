@@ -48,7 +48,7 @@ in_file "$work/report.json" '"compared_pixels": 600'; in_file "$work/report.json
 
 claim "a wrong mask is status 3, one line, and says what is wrong"
 for jobs in 1 2; do
-    run 3 -q "$work/a" "$work/b" -j $jobs --mask "$work/small.pfm"; one_line; says "small.pfm: a mask of 20 x 30 pixels: expected 40 x 30 as $work/a/f_1.pfm has"
+    run 3 -q "$work/a" "$work/b" -j $jobs --mask "$work/small.pfm"; one_line; says "small.pfm: a mask of 20 x 30 pixels: expected 40 x 30, the size of $work/a/f_1.pfm"
     run 3 -q "$work/a" "$work/b" -j $jobs --mask "$work/black.pfm"; one_line; says "black.pfm: the whole mask is black"
     run 3 -q "$work/a" "$work/b" -j $jobs --mask "$work/none.pfm"; one_line; says "none.pfm"
     run 3 -q "$work/a" "$work/b" -j $jobs --mask README.md; one_line; says "README.md"
@@ -69,8 +69,8 @@ run 0 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/f_%d.pfm"
 run 0 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/masks/"
 run 0 "$work/a" "$work/b" --mask "$work/left.pfm"
 cp "$work/left.pfm" "$work/masks/f_3.pfm"
-run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "the mask f_3.pfm belongs to no image"
-run 3 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/f_%d.pfm"; one_line; says "f_3.pfm belongs to no image"
+run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "no image belongs to the mask f_3.pfm: expected the name of an image"
+run 3 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/f_%d.pfm"; one_line; says "no image belongs to the mask f_3.pfm: expected the number of an image"
 mv "$work/masks/f_3.pfm" "$work/masks/f_2.PNG"
 run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "two masks for f_2.pfm"
 

@@ -95,8 +95,8 @@ run 1 "$work/plain/new.png" $b --update; one_line; says "plain/new.png"
 claim "--shrink writes a small JPEG and nothing else"
 run 0 --shrink 40 $a "$work/small.jpg"; silent out; silent err
 if od -An -v -tx1 "$work/small.jpg" | tr -d ' \n' | grep -q '^ffd8.*ffc00011080\{2\}1e0028'; then good; else bad "not a JPEG of 40 x 30 pixels"; fi
-run 2 --shrink 40 $a "$work/none.jpg" --max-flip 0.5; says "--max-flip: it has no effect: --shrink compares nothing"; one_line; none "$work/none.jpg"
-run 2 --shrink 40 $a "$work/none.jpg" --github; says "--github: it has no effect"; none "$work/none.jpg"
+run 2 --shrink 40 $a "$work/none.jpg" --max-flip 0.5; says "--max-flip: has no effect: --shrink compares nothing"; one_line; none "$work/none.jpg"
+run 2 --shrink 40 $a "$work/none.jpg" --github; says "--github: has no effect"; none "$work/none.jpg"
 run 2 --shrink 40 $a $a; one_line
 run 3 --shrink 40 "$work/text.png" "$work/none.jpg"; one_line; none "$work/none.jpg"
 

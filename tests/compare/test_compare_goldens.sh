@@ -109,7 +109,7 @@ for option in "--depth 16" "--aov depth" "--background transparent" "--resume"; 
     render 2 -o "$work/y_%d.jpg" $option; one_line; none "$work/y_0.jpg"
 done
 program=$TRACTRIX_BIN/tractrix-compare
-run 3 "$work/jpeg/" "$work/png/"; says "x.jpg: unreadable: $work/png/x.jpg: a JPEG file, which has lost what is measured: expected PNG, EXR or PFM"
+run 3 "$work/jpeg/" "$work/png/"; says "x.jpg: unreadable: $work/png/x.jpg: a JPEG file, whose compression changes pixels: expected PNG, EXR or PFM"
 render 0 -o "$work/new.png"
 run 3 "$work/jpeg/x.jpg" "$work/new.png"; says "$work/jpeg/x.jpg: a JPEG file"
 program=scripts/compare-goldens

@@ -53,7 +53,7 @@ for wrong in 2 "2," ",1" 300,1 2,1.5 2,101%; do compare 2 --platform $platform -
 
 claim "a GPU's images are not compared with a CPU's unless that is asked for"
 compare 1 --platform nvidia-h100-550
-says "x_0.pfm: new: no $g/nvidia/x_0.pfm; that of all platforms counts for a GPU only with --any-platform"; says "4 images: 4 new"
+says "x_0.pfm: new: no $g/nvidia/x_0.pfm; the golden for all platforms is used for GPUs only with --any-platform"; says "4 images: 4 new"
 compare 1 --platform nvidia-h100-550 --any-platform; says "golden: $g/x_0.pfm (common)"; says "3 same, 1 different"
 grey "$g/nvidia/x_1.pfm" 0
 compare 1 --platform nvidia-a100-535; says "golden: $g/nvidia/x_1.pfm (class)"; says "4 images: 1 same, 3 new"
@@ -104,7 +104,7 @@ for option in --any-platform "--level class --update" "--class-limits 2,1" "--co
     compare 2 $option; one_line; says "expected --platform NAME"
 done
 compare 2 --platform $platform --level class; one_line; says "expected --update"
-compare 2 --platform nvidia-h100-550 --level common --update; one_line; says "does not count for the GPU"
+compare 2 --platform nvidia-h100-550 --level common --update; one_line; says "goldens for all platforms are not used for the GPU"
 for wrong in cpu ../x a/b .x 'A b'; do compare 2 --platform "$wrong"; one_line; says "expected what tractrix-render --platform prints"; done
 run 2 "$new/x_1.pfm" "$new/x_1.pfm" --platform $platform; one_line; says "is for folders"
 

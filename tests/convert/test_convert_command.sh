@@ -37,7 +37,7 @@ run 0 $curls --unit m -q -o "$x.data" --to-unit 0.25 --to-up z
 run 0 "$x.data" -q --unit 0.25 --up z -o "$work/again.data"
 run 0 $curls --unit m -q -o "$work/direct.data"; equal "$work/again.data" "$work/direct.data"
 run 0 $curls --unit m -q -o "$x.hair" --to-unit 0.25 --to-up z; run 0 "$x.hair" -o "$work/again.data" --format data; equal "$work/again.data" "$work/direct.data"
-run 0 $curls --unit m -q -o "$x.data" --to-unit cm; run 0 "$x.data" -o "$work/again.data"; says "x.data: guessed a unit of 0.01 m and y up: --unit and --up say otherwise"
+run 0 $curls --unit m -q -o "$x.data" --to-unit cm; run 0 "$x.data" -o "$work/again.data"; says "x.data: guessed a unit of 0.01 m and y up: set --unit and --up if this is wrong"
 run 0 "$x.data" -q -o "$work/again.data"; silent err; run 0 $curls -o "$work/again.tfx"; silent err
 run 0 $curls -q -o "$x.usda" --to-unit cm --to-up z; in_file "$x.usda" "metersPerUnit = 0.01"; in_file "$x.usda" 'upAxis = "Z"'; run 0 "$x.usda"; says "unit      0.01 m as given"
 
@@ -59,7 +59,7 @@ run 0 $curls --subsample 0.1 --seed 6 -q -o "$work/b.data"
 if cmp -s "$work/a.data" "$work/b.data"; then bad "the seed makes no difference"; else good; fi
 run 0 $curls --reverse --reverse --unit m -q -o "$work/b.data"; equal "$work/b.data" "$work/direct.data"
 run 0 $curls --resample-spline 40 --smooth 3 --spacing 0.01 --min-length 0.001 -q -o "$x.hair"
-run 1 $curls --min-length 50 -o "$work/none.hair"; says "no strand is as long as 50 m"; one_line; none "$work/none.hair"
+run 1 $curls --min-length 50 -o "$work/none.hair"; says "--min-length 50: no strand is that long"; one_line; none "$work/none.hair"
 run 1 $curls --min-length 0.0001 --spacing 0.000001 -o "$work/none.hair"; says "at most 65535"; one_line; none "$work/none.hair"
 
 claim "several files become one; what only some have is reported"
@@ -92,7 +92,7 @@ run 0 "$work/dirty.tfx" --unit m -o "$work/clean.tfx"
 says "dirty.tfx:9: 1 strand with a coordinate that is not finite"; says "dirty.tfx:10: 1 strand of fewer than two"
 says "dirty.tfx:5: 1 vertex that coincides"; says "1 attribute value that is not a finite number"
 run 0 "$work/clean.tfx" --strict; says "strands   3 usable of 3"; silent err
-run 3 "$work/dirty.tfx" --strict -o "$work/none.tfx"; says "refused: --strict"; one_line; none "$work/none.tfx"
+run 3 "$work/dirty.tfx" --strict -o "$work/none.tfx"; says "refused because of --strict"; one_line; none "$work/none.tfx"
 
 claim "- is standard input and standard output, and then all messages go to standard error"
 "$program" - -q --unit m -o - --format data <$curls >"$work/again.data" 2>"$work/err"; silent err; equal "$work/again.data" "$work/direct.data"
@@ -142,14 +142,14 @@ def Xform "head"
 END
 run 0 "$work/cubic.usda" -o "$work/linear.usda"; says "3 frames"
 in_file "$work/linear.usda" "        3: [(0, 0, 4), (0, 0.5, 4), (0, 1, 4), (0, 1.5, 4), (0, 2, 4), (0, 2.5, 4), (0, 3, 4)],"
-run 0 "$work/cubic.usda" --points-per-strand 4 -o "$work/linear.obj"; says "of 3 time samples only the first is read"; in_file "$work/linear.obj" "v 0 2 0"
+run 0 "$work/cubic.usda" --points-per-strand 4 -o "$work/linear.obj"; says "only the first of 3 time samples is read"; in_file "$work/linear.obj" "v 0 2 0"
 
 claim "lists of points need no more than how many make a strand"
 run 0 $curls -q --unit m -o "$x.ply" --format ply-text
 sed '/^element strand/,/^end_header/d; s/^property float z$/&\nend_header/' "$x.ply" | head -n 14408 >"$work/cloud.ply"
-run 0 "$work/cloud.ply" --unit m -o "$work/again.data"; says "cloud.ply: 48 points a strand, found from where points jump"; equal "$work/again.data" "$work/direct.data"
+run 0 "$work/cloud.ply" --unit m -o "$work/again.data"; says "cloud.ply: 48 points per strand, found from gaps between points"; equal "$work/again.data" "$work/direct.data"
 run 0 "$work/cloud.ply" --unit m --points-per-strand 48 -o "$work/again.data"; silent err; equal "$work/again.data" "$work/direct.data"
-run 3 "$work/cloud.ply" --points-per-strand 49; says "14400 points are no strands of 49"; one_line
+run 3 "$work/cloud.ply" --points-per-strand 49; says "14400 points cannot be divided into strands of 49"; one_line
 run 2 $curls --points-per-strand 48; says "has no effect"; one_line
 run 2 $curls --array x; says "has no effect"; one_line
 
@@ -166,7 +166,7 @@ claim "numbered files are frames"
 for i in 0 1 2 3; do run 0 $fur --unit m --subsample 1% -q --translate "0,$i,0" -o "$work/f_0$i.tfx"; done
 run 0 "$work/f_%02d.tfx" -o "$work/anim.usda" --fps 24; says "anim.usda: USD (.usda), 4 frames"
 in_file "$work/anim.usda" "endTimeCode = 3"; in_file "$work/anim.usda" "timeCodesPerSecond = 24"; in_file "$work/anim.usda" "        3: [("
-run 0 "$work/anim.usda" -o "$work/h.data"; says "anim.usda: of 4 time samples only the first is read"
+run 0 "$work/anim.usda" -o "$work/h.data"; says "anim.usda: only the first of 4 time samples is read"
 run 0 "$work/f_00.tfx" --unit m -q -o "$work/g_0.data"; equal "$work/h.data" "$work/g_0.data"; rm "$work/g_0.data"
 run 0 "$work/f_%02d.tfx"; says "frames    4, 0 to 3, 60 a second"
 run 0 "$work/f_%02d.tfx" --first 1 --every 2 -q -o "$work/g_%d.data"; none "$work/g_0.data"; none "$work/g_2.data"
@@ -175,7 +175,7 @@ run 0 "$work/f_%02d.tfx" --unit m --first 3 -q -o "$work/g_%d.data"; equal "$wor
 run 0 "$work/f_%02d.tfx" --unit m -q -o "$work/anim.npz" --fps 24; run 0 "$work/anim.npz" -q -o "$work/anim2.usda"; run 0 "$work/f_%02d.tfx" --unit m -q -o "$work/anim3.usda" --fps 24; equal "$work/anim2.usda" "$work/anim3.usda"
 run 0 "$work/anim.npz" --first 2 --last 3 -q -o "$work/h_%d.data"; run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"; equal "$work/h_3.data" "$work/h.data"; none "$work/h_1.data"
 run 3 "$work/anim.npz" --first 4 -o "$work/none.usda"; says "no frame 4: it has 0 to 3"; one_line; none "$work/none.usda"
-run 2 "$work/f_%02d.tfx" -o "$work/one.data"; says "one name for 4 frames"; one_line; none "$work/one.data"
+run 2 "$work/f_%02d.tfx" -o "$work/one.data"; says "one file name for 4 frames"; one_line; none "$work/one.data"
 run 3 "$work/f_%02d.tfx" --first 7; says "no file for frame 7"; one_line
 run 3 "$work/f_%02d.tfx" --last 4 -o "$work/none.usda"; says "f_04.tfx"; one_line; none "$work/none.usda"
 run 0 $curls --subsample 1% -q -o "$work/f_04.tfx"
@@ -256,11 +256,11 @@ run 0 "$work/elsewhere.tfx" --mesh assets/head.obj --fit --attach --push-out 0.0
 says "--fit: scaled by 0.768"; says "turned by 20 degrees"; says "--attach: "; says " mm"; says "--push-out: "
 says "inside the mesh: 0 of "
 in_file "$work/fitted.json" '"strands_inside": 0'; in_file "$work/fitted.json" '"depth_inside"'
-run 2 assets/bob.tfx --attach -o "$work/unfit.tfx"; says "--attach: expected the mesh: --mesh FILE"; one_line
-run 2 assets/bob.tfx --mesh assets/head.obj -o "$work/unfit.tfx"; says "--mesh: it has no effect"; one_line
+run 2 assets/bob.tfx --attach -o "$work/unfit.tfx"; says "--attach: expected --mesh FILE with it"; one_line
+run 2 assets/bob.tfx --mesh assets/head.obj -o "$work/unfit.tfx"; says "--mesh: has no effect"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj --push-out -1 -o "$work/unfit.tfx"; says "--push-out: got '-1', expected a distance"; one_line
-run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "hair stands alone, not behind --mesh"; one_line
-run 3 assets/head.obj; says "not hair: a mesh stands behind --mesh"; one_line
+run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "a hair file is given without --mesh"; one_line
+run 3 assets/head.obj; says "not hair: expected hair; a mesh is given with --mesh"; one_line
 none "$work/unfit.tfx"
 
 claim "a mesh has the unit of the hair, also of several files and of numbered ones"
@@ -269,20 +269,20 @@ for number in 0 1; do cp assets/bob.tfx "$work/bob_$number.tfx"; done
 run 0 "$work/bob_%d.tfx" -q --mesh assets/head.obj --stats; grep "inside the mesh" "$work/out" >"$work/again"; equal "$work/inside" "$work/again"
 run 0 "$work/bob_0.tfx" "$work/bob_1.tfx" --mesh assets/head.obj --stats; says "inside the mesh: "
 
-claim "PLY meshes, and Alembic's, stand behind --mesh"
+claim "meshes of PLY and Alembic files are refused as hair"
 printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n-1 -1 -1\n1 -1 -1\n0 1 0\n0 -1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >"$work/mesh.ply"
 run 0 $curls --mesh "$work/mesh.ply" --mesh-unit m --stats; says "inside the mesh: "
-run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: a mesh stands behind --mesh"; one_line
+run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: expected hair; a mesh is given with --mesh"; one_line
 sed 's/3 0 3 2/3 0 3 9/' "$work/mesh.ply" >"$work/bad.ply"
 run 3 $curls --mesh "$work/bad.ply" --stats; says "bad.ply:17: face 3 has corner 9: expected less than 4"; one_line
 run 0 $curls --mesh tests/data/body.abc --stats
-run 3 $curls --mesh tests/data/groom.abc --stats; says "hair, no mesh that is shown"; one_line
+run 3 $curls --mesh tests/data/groom.abc --stats; says "hair, and no visible mesh"; one_line
 
 claim "groups: of Alembic, of files that become one"
 run 0 tests/data/unreal.abc --unit cm --group 5 --stats; says "2 strands, "
 run 0 $curls assets/fur.tfx -o "$work/two.abc" -q; run 0 "$work/two.abc" --group 1 -o "$work/one.hair" -q
-run 3 "$work/two.abc" --group 7 --stats; says "--group: no strand is of group 7: expected one from 0 to 1"; one_line
-run 0 "$work/two.abc" $fur "$work/two.abc" -o "$work/five.usda" -q; run 3 "$work/five.usda" --group 5 --stats; says "expected one from 0 to 4"; one_line
+run 3 "$work/two.abc" --group 7 --stats; says "--group: no strand belongs to group 7: expected a group from 0 to 1"; one_line
+run 0 "$work/two.abc" $fur "$work/two.abc" -o "$work/five.usda" -q; run 3 "$work/five.usda" --group 5 --stats; says "expected a group from 0 to 4"; one_line
 run 0 "$work/five.usda" --group 2 --stats; says "2000 strands, "; run 0 "$work/five.usda" --group 3 --stats; says "300 strands, "
 run 0 $curls assets/fur.tfx -o "$work/two.hair"; if grep -q groups "$work/err"; then bad "groups that nobody has asked for are lost"; else good; fi
 

@@ -299,7 +299,7 @@ static void what_does_not_go_together_is_named(void **state)
         {"x +", NULL, NULL, "--density: got 'x +', expected a formula of x, y, z, nx, "},
         {"none.png", NULL, NULL, "--density: none.png: "},
         {NULL, "0", NULL, "--length-map leaves no hair on mesh"},
-        {NULL, "0/0", NULL, "--length-map is no number at "},
+        {NULL, "0/0", NULL, "--length-map is not a number at "},
         {NULL, NULL, "1,2", "--comb: expected X,Y,Z, each a number or a formula, or a .png, got "},
         {NULL, NULL, "1,2,t", "--comb: got 't', expected a formula of x, y, z"},
     };

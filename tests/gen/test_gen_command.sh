@@ -22,7 +22,7 @@ claim "values are checked, and no option is ignored"
 refused 2 "--kind: got 'crls', expected random, straight, curls or fur (nearest: curls)" --kind crls
 refused 2 "--knid: no such option: did you mean '--kind'?" --knid curls
 refused 2 "--count: got '0', expected a whole number from 1 to 10000000" --count 0
-refused 2 "--curl-radius: it has no effect: --kind is fur" --kind fur --curl-radius 0.01
+refused 2 "--curl-radius: has no effect: --kind is fur" --kind fur --curl-radius 0.01
 refused 2 "--set 1k16 and --count exclude each other" --set 1k16 --count 5
 refused 2 "x: got a file, expected only options" x
 run 2; says "no output: expected -o FILE"

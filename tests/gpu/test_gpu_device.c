@@ -80,7 +80,7 @@ static void a_gpu_that_cannot_be_used_is_explained(void **state)
     assert_string_equal(why.text, "");
     temporary_write(state, "devices-of-a-machine/nvidiactl", "", 0666);
     gpu_device_explain(dev, &why);
-    assert_non_null(strstr(why.text, "no GPU beside it"));
+    assert_non_null(strstr(why.text, "no device file of a GPU"));
     temporary_write(state, "devices-of-a-machine/nvidia0", "", 0666);
     gpu_device_explain(dev, &why);
     assert_non_null(strstr(why.text, "capability 'graphics'"));

@@ -457,7 +457,7 @@ static void bombs_are_refused(void **state)
                    .data = {.max = {.x = 3, .y = 3}},
                    .shown = {.max = {.x = 15999, .y = 15999}}};
     Bytes file = make_file(&maker);
-    assert_refused(&file, "expected no more than");
+    assert_refused(&file, "expected pixels of at most");
     bytes_destroy(&file);
     maker.shown.max.x = maker.shown.max.y = 100000;
     file = make_file(&maker);

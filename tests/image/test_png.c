@@ -463,7 +463,7 @@ static void bombs_are_refused(void **state)
     static const struct {
         uint32_t width, height;
         const char *says;
-    } sizes[] = {{16000, 16000, "expected no more than"},
+    } sizes[] = {{16000, 16000, "expected pixels of at most"},
                  {1 << 20, 1 << 20, "at most"},
                  {1u << 30, 1, "width"},
                  {0, 5, "width"},

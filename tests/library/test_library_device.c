@@ -358,10 +358,10 @@ static void refuses_what_has_no_effect(void **state)
     } WRONG[] = {{{"gust_period", "3"}, "no effect"},
                  {{"raster", "blocks", "oit", "none"}, "exclude"},
                  {{"framing", "hair", "eye", "0,0,3"}, "--framing hair: expected an automatic"},
-                 {{"unit", "cm"}, "--unit: it has no effect: the hair is from an array"},
-                 {{"strict", "true"}, "--strict: it has no effect: the hair is from an array"},
-                 {{"mesh_up", "z"}, "--mesh-up: it has no effect: the mesh is from an array"},
-                 {{"mesh_fps", "9"}, "--mesh-fps: it has no effect: the mesh is from an array"}};
+                 {{"unit", "cm"}, "--unit: has no effect: the hair is from an array"},
+                 {{"strict", "true"}, "--strict: has no effect: the hair is from an array"},
+                 {{"mesh_up", "z"}, "--mesh-up: has no effect: the mesh is from an array"},
+                 {{"mesh_fps", "9"}, "--mesh-fps: has no effect: the mesh is from an array"}};
     TractrixSimulation *simulation;
     (void)state;
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; ++i) {

@@ -167,7 +167,7 @@ static void reads_what_is_there(void **state)
                                          "{\"sections\": [{\"file\": \"fur.tfx\", \"color\": "
                                          "\"red\", \"albedo\": \"black\"}]}",
                                          "assets", &library_error),
-                    TRACTRIX_BAD_INPUT, "'color' and 'albedo' are the same");
+                    TRACTRIX_BAD_INPUT, "'color' and 'albedo' are two names of the same key");
     library_refused(tractrix_scene_create(&scene, "bright", &library_error), TRACTRIX_USAGE,
                     "bright");
     WELL(tractrix_scene_read(&scene, "assets/demo.json", &library_error));

@@ -124,7 +124,7 @@ static void point_caches_take_faces_from_the_rest_pose(void **state)
     for (int mdd = 0; mdd < 2; ++mdd) {
         const char *name = mdd ? "p.mdd" : "p.pc2";
         options.rest = "";
-        expect(write_points(state, name, mdd, false, 1000), &options, "it has no faces");
+        expect(write_points(state, name, mdd, false, 1000), &options, "has no faces");
         options.rest = rest;
         expect(write_points(state, name, mdd, false, 1000), &options, NULL);
         expect(write_points(state, name, mdd, true, 1000), &options,
@@ -184,7 +184,7 @@ static void arrays_of_numpy_say_faces_rate_unit_and_axes(void **state)
     expect(write_npz(state, "a.npz", 2, false), &OPTIONS, NULL);
     expect(write_npz(state, "b.npz", 3, false), &OPTIONS,
            "triangle 0 has corner 3: expected less than 3");
-    expect(write_npz(state, "c.npz", 2, true), &OPTIONS, "'unit' is no single number");
+    expect(write_npz(state, "c.npz", 2, true), &OPTIONS, "'unit': expected one number");
     MeshSequence sequence;
     Mesh mesh;
     Error error;
@@ -289,7 +289,7 @@ static void alembic_meshes_are_samples_with_their_transforms(void **state)
     }
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&mesh);
-    expect("tests/data/curves.abc", &OPTIONS, "hair, no mesh that is shown");
+    expect("tests/data/curves.abc", &OPTIONS, "hair, and no visible mesh");
 }
 
 #define USD_HEAD                                                                                   \
@@ -347,10 +347,10 @@ static void meshes_of_usd_that_cannot_be_taken_are_refused_with_their_line(void 
          "m.usda:12: faceVertexIndices that change: expected the same faces in all samples"},
         {USD_FACES "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n"
                    "int[] primvars:skel:jointIndices = [0, 0, 0]\n",
-         "a mesh that a skeleton moves: expected its points at each time"},
+         "a mesh that a skeleton moves: expected baked points"},
         {"token visibility = \"invisible\"\n" USD_FACES
          "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n",
-         "no Mesh prim that is shown"},
+         "no visible Mesh prim"},
         {"", "no Mesh prim with points"},
         {"references = @x@\n}\ndef Xform \"A\" (\nreferences = @other.usda@\n)\n{\n",
          "references are not read: expected one layer"},

@@ -102,7 +102,7 @@ END
 chmod +x "$work/losing"
 # shellcheck disable=SC2086
 holds env TRACTRIX_RENDER="$work/losing" scripts/farm -n 3 -c "$work/l.cache" plain -o "$work/lost/%04d.png" $scene
-says "part 2 failed"; says "5 of 7 frames are there"
+says "part 2 failed"; says "5 of 7 frames are already written"
 for frame in 0 1 2 3 4 5 6; do equal "$work/one/frame_000$frame.png" "$work/lost/000$frame.png"; done
 
 claim "wrong usage is told"

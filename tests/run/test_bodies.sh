@@ -64,8 +64,8 @@ refused() { # JSON, expected
 }
 hair='"sections": [{"file": "curls.tfx"}]'
 refused '{"bodies": []}' "bodies: got [], expected an array of 1 to 16 bodies"
-refused "{\"bodies\": [{$hair}], $hair}" "'sections' beside 'bodies': expected it in a body"
-refused "{\"bodies\": [{$hair}], \"head\": {\"translate\": [1, 0, 0]}}" "'head' beside 'bodies': expected it in a body"
+refused "{\"bodies\": [{$hair}], $hair}" "'sections' beside 'bodies': expected this key in a body"
+refused "{\"bodies\": [{$hair}], \"head\": {\"translate\": [1, 0, 0]}}" "'head' beside 'bodies': expected this key in a body"
 refused '{"bodies": [{"mesh": "ball.obj"}]}' "bodies[0]: expected a key 'sections'"
 refused "{\"bodies\": [{$hair}, {$hair, \"fps\": 3}]}" "bodies[1]: 'fps' belongs to the top level, not to a body"
 refused "{\"bodies\": [{$hair, \"style\": 3}]}" "bodies[0]: 'style' belongs to the top level or to a section, not to a body"
@@ -75,6 +75,6 @@ refused "{\"bodies\": [{$hair, \"mesh\": \"none.obj\"}]}" "none.obj"
 
 claim "keys of a body that have no effect are named, shared keys only if they have none in any body"
 echo "{\"look\": \"plain\", \"frames\": 1, \"size\": \"32x24\", \"bodies\": [{$hair, \"mesh\": \"ball.obj\"}, {$hair, \"mesh\": \"ball.obj\", \"mesh_fps\": 12}]}" >"$work/idle.json"
-run 0 "$work/idle.json" -o "$work/idle.png"; says "idle.json: bodies[1].mesh_fps: it has no effect: --mesh does not deform"
+run 0 "$work/idle.json" -o "$work/idle.png"; says "idle.json: bodies[1].mesh_fps: has no effect: --mesh does not deform"
 run 0 "$both" --last 0 -o "$work/idle/"; if grep -q mesh_fps "$work/err"; then bad "warns"; else good; fi
 finish

@@ -337,7 +337,7 @@ static void a_file_that_is_no_cache_is_not_written_over(void **state)
     assert_int_equal(
         cache_writer_open(&writer, path, &fixture.simulation, &fixture.strands, &error),
         RESULT_FAILED);
-    assert_non_null(strstr(error.text, "is no cache"));
+    assert_non_null(strstr(error.text, "is not a cache"));
     assert_int_equal(bytes_read_file(&file, path, NULL), RESULT_OK);
     assert_int_equal(file.size, 8);
     assert_memory_equal(file.data, "my notes", 8);

@@ -27,12 +27,12 @@ claim "a cache of another scene, or one that is damaged or cut off, is refused b
 {
 run 3 $scene -q --from-cache "$work/a.cache" --style 0.3 -o "$work/x/"; one_line; says "sections[0].style"
 run 3 $hair -q --from-cache "$work/a.cache" --frames 2 -o "$work/x/"; one_line; says "a.cache: was simulated with"
-run 3 $scene -q --from-cache "$work/a.cache" --frames 13 -o "$work/x/"; one_line; says "no frame 12, whole ones: 0 to 11"
+run 3 $scene -q --from-cache "$work/a.cache" --frames 13 -o "$work/x/"; one_line; says "no frame 12: complete frames: 0 to 11"
 run 3 $scene -q --from-cache "$work/none.cache" -o "$work/x/"; one_line; says "none.cache"
 run 3 $scene -q --from-cache "$hair" -o "$work/x/"; one_line; says "TRXCACHE"
 size=$(($(wc -c <"$work/a.cache") * 2 / 3))
 head -c $size "$work/a.cache" >"$work/cut.cache"
-run 3 $scene -q --from-cache "$work/cut.cache" -o "$work/x/"; one_line; says "whole ones: 0 to"; says "the file ends within"
+run 3 $scene -q --from-cache "$work/cut.cache" -o "$work/x/"; one_line; says "complete frames: 0 to"; says "the file ends within"
 run 0 $scene -q --from-cache "$work/cut.cache" --last 6 -o "$work/whole6/"
 run 2 $scene --cache "$work/a.cache" --from-cache "$work/a.cache"; one_line
 cp "$work/a.cache" "$work/flip.cache"
@@ -57,7 +57,7 @@ if cmp -s "$work/whole6/frame_0006.png" "$work/direct/frame_0006.png"; then good
 
 claim "a file that is no cache stays as it is, and a full disk is said as such, in a cache and in USD"
 cp "$hair" "$work/own.tfx"
-run 1 "$hair" -q --frames 2 --cache "$work/own.tfx"; one_line; says "is no cache"
+run 1 "$hair" -q --frames 2 --cache "$work/own.tfx"; one_line; says "is not a cache"
 if cmp -s "$hair" "$work/own.tfx"; then good; else bad "the file was changed"; fi
 for out in --cache --export; do # a limit of the file size imitates a full disk
     # shellcheck disable=SC2086
@@ -71,7 +71,7 @@ claim "a run that was stopped goes on where it was, and only what is missing or 
 {
 run 0 $scene -q --last 4 --cache "$work/r.cache" -o "$work/res/"
 is_file "$work/r.cache.state"
-run 0 $scene --resume --cache "$work/r.cache" -o "$work/res/"; says "5 of 12 frames are there"; says "7 frames in"
+run 0 $scene --resume --cache "$work/r.cache" -o "$work/res/"; says "5 of 12 frames are already written"; says "7 frames in"
 if cmp -s "$work/a.cache" "$work/r.cache"; then good; else bad "the resumed cache differs"; fi
 rm "$work/res/frame_0003.png"
 head -c 900 "$work/direct/frame_0009.png" >"$work/res/frame_0009.png"
@@ -126,11 +126,11 @@ for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
     cp $hair "$work/own.tfx"
     go "2 frames in" --frames 2
     cp "$first" "$work/first"
-    go "2 of 2 frames are there" --frames 2 --stats "$work/again.json" --verbose
-    go "1 of 1 frames are there" --frames 2 --first 1 --part 1/2
-    go "2 of 3 frames are there" --frames 3
-    go "3 existing files will be written again: $first: other parameters or other files" --frames 3 --color red
-    go "3 of 3 frames are there" --frames 3 --color red
+    go "2 of 2 frames are already written" --frames 2 --stats "$work/again.json" --verbose
+    go "1 of 1 frames are already written" --frames 2 --first 1 --part 1/2
+    go "2 of 3 frames are already written" --frames 3
+    go "3 existing files will be written again: $first: was made with other parameters or input files" --frames 3 --color red
+    go "3 of 3 frames are already written" --frames 3 --color red
     cp assets/fall.tfx "$work/own.tfx"
     go "3 existing files will be written again" --frames 3 --color red
     cp $hair "$work/own.tfx"
@@ -143,14 +143,14 @@ for name in f_%d.png f_%d.exr f_%d.pfm f_%d.tfx; do
     second=$work/again/f_1${name#f_%d}
     cp "$second" "$work/second"
     head -c 300 "$work/first" >"$second"
-    go "1 existing file will be written again: $second:" --frames 3; says "2 of 3 frames are there"; equal "$second" "$work/second"
-    go "1 existing file will be written again: $second: other parameters or other files" --first 1 --last 1 --frames 3 --color red
-    go "1 existing file will be written again: $second: other parameters or other files" --frames 3; equal "$second" "$work/second"
-    go "3 of 3 frames are there" --frames 3
+    go "1 existing file will be written again: $second:" --frames 3; says "2 of 3 frames are already written"; equal "$second" "$work/second"
+    go "1 existing file will be written again: $second: was made with other parameters or input files" --first 1 --last 1 --frames 3 --color red
+    go "1 existing file will be written again: $second: was made with other parameters or input files" --frames 3; equal "$second" "$work/second"
+    go "3 of 3 frames are already written" --frames 3
 done
 name=t_%d.png; to=-o
 go "2 frames in" --frames 2 --background transparent
-go "2 of 2 frames are there" --frames 2 --background transparent
+go "2 of 2 frames are already written" --frames 2 --background transparent
 go "2 existing files will be written again" --frames 2
 name=x_%d.pfm; to=-o
 go "2 frames in" --frames 2
@@ -158,9 +158,9 @@ mv "$work/again/x_.pfm.scenes" "$work/lines"
 # shellcheck disable=SC2086
 run 0 "$work/own.tfx" $plain --scalp none --algo none --size 32x24 --frames 2 -q -o "$work/again/y_%d.pfm" --export "$work/again/y_%d.tfx"
 if ls "$work"/again/y_*.scenes >/dev/null 2>&1; then bad "a record without --resume"; else good; fi
-go "no record of the scene that it shows" --frames 2
+go "there is no record of how it was rendered" --frames 2
 (cat "$work/lines"; printf '0 no\n7\n99999999999 0123456789abcdef 01234567\n-1 0 0\n%s' "$(head -c 20 "$work/lines")") >"$work/again/x_.pfm.scenes"
-go "2 of 2 frames are there" --frames 2
+go "2 of 2 frames are already written" --frames 2
 run 2 $hair -q -o "$work/again/x_%d.pfm" --stats "$work/again/x_.pfm.scenes"; one_line; says "--output's record"
 
 finish

@@ -103,7 +103,7 @@ for name in render gen convert compare bench; do
     run 0 --help help; says "--help [TOPIC]"; silent err
     run 0 --help=all; says "Usage: tractrix-$name"
     run 2 --help wibble; one_line; says "tractrix-$name: --help: no topic 'wibble': expected"
-    run 2 --wibble; one_line; says "tractrix-$name: --wibble: no such option: --help lists them"
+    run 2 --wibble; one_line; says "tractrix-$name: --wibble: no such option: see --help"
     run 2 --verison; one_line; says "tractrix-$name: --verison: no such option: did you mean '--version'?"
 done
 program=$bin/tractrix-render
@@ -144,9 +144,9 @@ run 2 $hair --frames many -o "$work/x/"; one_line
 run 2 $hair --algo splitt -o "$work/x/"; one_line; says "did you mean 'split'"
 run 2 $hair --algo verlet -o "$work/x/"; one_line; says "no solver 'verlet': expected split, emulation"
 run 2 $hair --rope-iterations 5 -o "$work/x/"; one_line; says "--rope-iterations: --algo hybrid has no such parameter"
-run 2 $hair --look plain --shadow-size 64 -o "$work/x/"; one_line; says "--shadow-size: it has no effect: --shadow is none"
+run 2 $hair --look plain --shadow-size 64 -o "$work/x/"; one_line; says "--shadow-size: has no effect: --shadow is none"
 printf '{"frames": 1, "size": "16x16", "look": "plain", "shadow_size": 99, "sections": [{"file": "%s/%s"}]}\n' "$PWD" "$hair" >"$work/idle.json"
-run 0 "$work/idle.json" -o "$work/idle/"; says "idle.json: shadow_size: it has no effect: --shadow is none"
+run 0 "$work/idle.json" -o "$work/idle/"; says "idle.json: shadow_size: has no effect: --shadow is none"
 run 0 "$work/idle.json" -o "$work/idle/" -q; silent err
 printf '{"sections": [{"file": "%s/%s", "chain_bend": 9}]}\n' "$PWD" "$hair" >"$work/owner.json"
 run 2 "$work/owner.json" -o "$work/x/"; one_line; says "owner.json: sections[0].chain_bend: algo 'hybrid' has no such parameter"
@@ -269,12 +269,12 @@ for frame in 1 2; do
 done
 
 claim "a scalp of another size than a head's names the unit that gives it a head"
-run 0 assets/curls.tfx --unit 10 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be as large as a head"; says "the scalp is 1.5 m wide, a head's 0.15 m: --unit m makes it one"
-run 0 assets/curls.tfx --unit 0.5 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be"; says "--unit m makes it one"
+run 0 assets/curls.tfx --unit 10 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be as large as a head"; says "the scalp is 1.5 m wide, a head's 0.15 m: with --unit m it is as wide"
+run 0 assets/curls.tfx --unit 0.5 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be"; says "with --unit m it is as wide"
 
 claim "hair on a scalp gets a head that hides and holds it; --scalp none, -q and what is no scalp are silent"
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: a head of 0.1"; in_file "$work/stats.json" '"sphere"'
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: a head of 0.1"
+run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: guessed a head of 0.1"; in_file "$work/stats.json" '"sphere"'
+run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: guessed a head of 0.1"
 if grep -q '"sphere"' "$work/stats.json"; then bad "a fitted head holds hair with --no-collide-mesh"; else good; fi
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
 if cmp -s "$work/head.png" "$work/bare.png"; then bad "the same picture"; else good; fi
@@ -284,7 +284,7 @@ run 0 assets/curls.tfx --frames 1 --size 16x16 --look plain -o "$work/bare.png";
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 3 --size 16x16 --cache "$work/scalp.cache"; run 0 assets/curls.tfx --scatter none --followers 4 --frames 3 --size 16x16 --from-cache "$work/scalp.cache" -o "$work/scalp/"
 
 claim "hair of few strands is filled, in one line, unless the user says a number"
-run 0 assets/curls.tfx --scatter none --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"; says "assets/curls.tfx: 1200 followers fill between 300 strands: --followers says otherwise"
+run 0 assets/curls.tfx --scatter none --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"; says "assets/curls.tfx: 1200 followers fill the space between 300 strands: set --followers to change their number"
 in_file "$work/stats.json" '"followers": 1200'
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "followers" "$work/err"; then bad "said something"; else good; fi
 run 0 assets/curls.tfx --scatter none --frames 1 --size 16x16 -q -o "$work/fill/"; silent err

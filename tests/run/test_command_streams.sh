@@ -130,7 +130,7 @@ run 0 $hair --algo none --frames 2 -q -o "$work/e/x_%d.exr"
 holds "$compare" "$work/e/x_0.exr" "$work/e/x_1.exr"
 if [ "$(wc -c <"$work/e/x_0.exr")" = "$(wc -c <"$work/e/x_1.exr")" ]; then good; else bad "another size"; fi
 # shellcheck disable=SC2086
-run 0 $hair --algo none --frames 3 --resume -o "$work/e/x_%d.exr"; says "2 of 3 frames are there"
+run 0 $hair --algo none --frames 3 --resume -o "$work/e/x_%d.exr"; says "2 of 3 frames are already written"
 # shellcheck disable=SC2086
 run 2 $hair -q --exr-float -o "$work/x.png"; one_line; says "exr"
 

@@ -25,7 +25,7 @@ line 2 "--color-variation: got '-1e30', expected a number from 0 to 1 (nearest: 
 line 2 "--frames: got '99999999999999999999', expected a whole number from 1 to 10000000 (nearest: 10000000)" render fur.tfx --frames 99999999999999999999
 line 2 "--frames: got '', expected a whole number from 1 to 10000000" render fur.tfx --frames ''
 line 2 "--fov: got 'nan', expected a number from 1 to 170 (deg)" render fur.tfx --fov nan
-line 2 "--style: got '0:-1e30', expected a number from 0 to 1, or such from root to tip, A:B" render fur.tfx --style 0:-1e30
+line 2 "--style: got '0:-1e30', expected a number from 0 to 1, or two such numbers, ROOT:TIP" render fur.tfx --style 0:-1e30
 line 2 "--colliders: sphere: got -1e+30, expected numbers from -1000000 to 1000000" render fur.tfx --colliders sphere:0,0,0,-1e30
 line 2 "--colliders: sphere: got the radius -1, expected a number from 0 to 1000000" render fur.tfx --colliders sphere:0,0,0,-1
 line 2 "--scale: got '-1e30', expected a number from 1e-9 to 1e9" convert fur.tfx --scale -1e30 -o y.tfx
@@ -48,7 +48,7 @@ odd=$(printf 'no\nfile%s[31m' "$escape")
 line 3 'no\nfile\x1b[31m: No such file or directory' convert "$odd"
 line 3 '\xc2\x9b1m\xff\xe2\x80\xaex: No such file or directory' convert "${c1}1m$bad${left}x"
 line 2 "--frames: got '3\n4', expected a whole number from 1 to 10000000" render fur.tfx --frames "$(printf '3\n4')"
-line 2 '--\x1b[2J: no such option: --help lists them' render "--${escape}[2J"
+line 2 '--\x1b[2J: no such option: see --help' render "--${escape}[2J"
 line 2 "--kind: got '\x1b', expected random, straight, curls or fur" gen --kind "$escape" -o g.tfx
 scene '"bad\\u001bkey\\n%s": 1' 'unknown key '"'"'bad\x1bkey\n%s'"'"': expected a key of --help schema'
 scene '"frames": "\\n\\u009b"' "frames: got \"\\n\xc2\x9b\", expected a whole number from 1 to 10000000"
@@ -84,7 +84,7 @@ printf 'solver,ms\nsplit,2\n' >step.csv
 marked step.csv; holds "$bin/tractrix-bench" page marked.step.csv --html page.html
 in_file page.html '"solver"'
 for text in '' '\0357\0273\0277' '\0000'; do
-    printf %b "$text" >none.csv; line 3 "none.csv: no text: expected a line of columns' names" bench page none.csv --html none.html
+    printf %b "$text" >none.csv; line 3 "none.csv: is empty: expected a line with the names of the columns" bench page none.csv --html none.html
 done
 
 claim "bad PNG files have a reason that can be read"

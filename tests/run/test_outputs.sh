@@ -65,7 +65,7 @@ ln -sf ../../victim late/frame_199.png
 END
 (cd "$work/sc" && sh swap) &
 # shellcheck disable=SC2086
-run 3 "$work/sc/own.json" --look plain --followers 0 --algo none --frames 200 --size 32x24 -q; refuses "frame_199.png" "is a link"
+run 3 "$work/sc/own.json" --look plain --followers 0 --algo none --frames 200 --size 32x24 -q; refuses "frame_199.png" "is a symbolic link"
 wait; safe
 
 claim "a folder that is missing and .. behind it lead back"

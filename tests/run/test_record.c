@@ -42,7 +42,7 @@ static void the_last_line_of_a_frame_counts(void **state)
     assert_int_equal(record_read(&record, &target, 1, NULL), RESULT_OK);
     assert_int_equal(record_compare(&record, 1, frame, SCENE, NULL), RESULT_OK);
     assert_int_equal(record_compare(&record, 1, frame, OTHER, &why), RESULT_FAILED);
-    assert_non_null(strstr(why.text, "other parameters or other files"));
+    assert_non_null(strstr(why.text, "was made with other parameters or input files"));
     record_destroy(&record);
     target_destroy(&target);
     free(frame);

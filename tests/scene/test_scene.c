@@ -376,8 +376,8 @@ static const struct {
      "sections[1]: unknown key 'darg': did you mean 'drag'?"},
     {"{\"sections\": [{\"file\": \"a\", \"fps\": 1}]}", "'fps' belongs to the top level"},
     {"{\"sections\": [{\"file\": \"a\", \"drag\": -1}]}",
-     "sections[0].drag: got '-1', expected a number from 0 to 1000000 (1/s), or such from "
-     "root to tip, A:B (nearest: 0)"},
+     "sections[0].drag: got '-1', expected a number from 0 to 1000000 (1/s), or two such numbers, "
+     "ROOT:TIP (nearest: 0)"},
     {"{" HAIR ", \"drag\": [[0, 1], [1]]}",
      "drag: got [[0,1],[1]], expected a number from 0 to 1000000, or points along the strand"},
     {"{" HAIR ", \"drag\": [[0.5, 1], [0.25, 3]]}", "drag: got '1@0.5:3@0.25'"},

@@ -203,7 +203,7 @@ static void unreals_attributes_are_read(void **state)
     assert_int_equal(strands_read(&strands, "tests/data/unreal.abc", &options, &report, NULL),
                      RESULT_OK);
     assert_int_equal(strands.strand_count, 5);
-    assert_non_null(strstr(report.note, "left out: 1 guides"));
+    assert_non_null(strstr(report.note, "1 guides are left out"));
     const float group[] = {0, 1, 0, 5, 5};
     assert_memory_equal(strands.strand_group, group, sizeof group);
     assert_float_equal(strands.position[4][1], 0.01, 1e-9);
@@ -229,7 +229,7 @@ static void a_group_can_be_picked(void **state)
     assert_int_equal(strands.strand_count, 2);
     assert_float_equal(strands.position[0][0], 10, 1e-9);
     assert_int_equal(strands_pick_group(&strands, 2, &error), RESULT_BAD_INPUT);
-    assert_string_equal(error.text, "no strand is of group 2: expected one from 5 to 5");
+    assert_string_equal(error.text, "no strand belongs to group 2: expected a group from 5 to 5");
     strands_destroy(&strands);
 }
 
@@ -281,7 +281,7 @@ static void what_is_no_groom_says_what_it_is(void **state)
     Bytes bytes = read_file("tests/data/curves.abc"), mesh = read_file("tests/data/body.abc");
     bytes.data[5] = 0;
     refuse(bytes.data, bytes.size, "the file was not closed");
-    refuse(mesh.data, mesh.size, "meshes without hair: a mesh stands behind --mesh");
+    refuse(mesh.data, mesh.size, "meshes without hair: expected hair; a mesh is given with --mesh");
     // A group with more parts than the file has bytes.
     bytes.data[5] = 0xff;
     uint64_t root;
@@ -319,7 +319,7 @@ static void widths_that_only_some_objects_have_are_left_out_with_a_line(void **s
     assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &METRES, &report, NULL),
                      RESULT_OK);
     assert_null(strands.vertex_thickness);
-    assert_non_null(strstr(report.note, "left out: widths"));
+    assert_non_null(strstr(report.note, "widths are left out"));
     strands_destroy(&strands);
     bytes_destroy(&bytes);
 }

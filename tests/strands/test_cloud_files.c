@@ -181,8 +181,8 @@ static void bare_points_become_strands(void **state)
     char *text = make_cloud(6, 12, false), *odd = make_cloud(6, 12, true);
     Strands strands = read_well(text, strlen(text), &METRES, &report);
     assert_int_equal(strands.strand_count, 6);
-    assert_string_equal(report.note, "12 points a strand, found from where points jump: "
-                                     "--points-per-strand says otherwise");
+    assert_string_equal(report.note, "12 points per strand, found from gaps between points: "
+                                     "set --points-per-strand if this is wrong");
     strands_destroy(&strands);
     StrandsReadOptions options = {.unit = 1, .points_per_strand = 24};
     strands = read_well(text, strlen(text), &options, &report);
@@ -190,14 +190,14 @@ static void bare_points_become_strands(void **state)
     assert_string_equal(report.note, "");
     strands_destroy(&strands);
     options.points_per_strand = 7;
-    refuse(text, strlen(text), &options, "72 points are no strands of 7 points each");
-    refuse(odd, strlen(odd), &METRES,
-           "73 points without strands, which jump at 5 places and not "
-           "after equally many: expected --points-per-strand N");
+    refuse(text, strlen(text), &options, "72 points cannot be divided into strands of 7 points");
+    refuse(
+        odd, strlen(odd), &METRES,
+        "the gaps between its 73 points do not show it (5 gaps): expected --points-per-strand N");
     free(text);
     free(odd);
     const char *line = PLY("element vertex 4\n" XYZ "end_header\n0 0 0 0 1 0 0 2 0 0 3 0\n");
-    refuse(line, strlen(line), &METRES, "jump at 0 places");
+    refuse(line, strlen(line), &METRES, "(0 gaps)");
 }
 
 static void malformed_ply_is_refused(void **state)
@@ -217,16 +217,16 @@ static void malformed_ply_is_refused(void **state)
         {PLY("element vertex 4000000000\n" XYZ "end_header\n0 0 0\n"), "need 24000000000 bytes"},
         {PLY("element vertex 2\n" XYZ "end_header\n0 0 0\n0 x 0\n"), "FILE:9: expected a number"},
         {PLY("element vertex 2\n" XYZ "element face 1\nproperty list uchar int i\nend_header\n"),
-         "a mesh of 1 faces, not hair: a mesh stands behind --mesh"},
+         "a mesh of 1 faces, not hair: expected hair; a mesh is given with --mesh"},
         {PLY("element vertex 2\n" XYZ "element edge 1\nproperty int vertex1\nproperty int vertex2\n"
              "end_header\n0 0 0\n0 1 0\n0 2\n"),
-         "edge 0 joins vertices 0 and 2: expected neighbours"},
+         "edge 0 joins vertices 0 and 2: expected consecutive ones"},
         {PLY("element vertex 2\n" XYZ "element strand 1\nproperty ushort nsegs\nend_header\n"
              "0 0 0\n0 1 0\n2\n"),
-         "strands of more vertices than there are: 3 of 2"},
+         "the strands need 3 vertices or more, the file has 2"},
         {PLY("element vertex 3\n" XYZ "element strand 1\nproperty ushort nsegs\nend_header\n"
              "0 0 0\n0 1 0\n0 2 0\n1\n"),
-         "strands of 2 vertices in all, the file has 3"},
+         "the strands need 2 vertices in all, the file has 3"},
         {PLY("element vertex 1\nproperty list float int i\n"), "a list's count is a float"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
@@ -351,7 +351,7 @@ static void other_npy_is_refused(void **state)
         {"{'descr': '<f4', 'fortran_order': False, 'shape': (), }", "elements need 1 times 4"},
         {"{'descr': '<f4', 'fortran_order': False, 'shape': (4294967295, 4294967295, 4294967295), "
          "}",
-         "beyond all memory"},
+         "does not fit into memory"},
         {"{'descr': '<f4', 'fortran_order': Maybe, 'shape': (2, 2, 3), }", "header is damaged"},
         {"{'descr': '<f4', 'shape': (2, 2, 3), }", "header is damaged"},
         {"{'descr': '<f4', 'fortran_order': False, 'shape': (2, -2, 3), }", "header is damaged"},
@@ -486,7 +486,7 @@ static void the_axis_that_is_up_is_read_in_every_byte_order(void **state)
         add_deflated(&archive, "up.npy", &up, 0);
         end_archive(&archive);
         if (!cases[i].good) {
-            refuse(archive.pile.data, archive.pile.size, &METRES, "'up' is neither 'y' nor 'z'");
+            refuse(archive.pile.data, archive.pile.size, &METRES, "'up': expected 'y' or 'z'");
             continue;
         }
         Strands strands =
@@ -547,10 +547,11 @@ static void npz_that_lies_is_refused(void **state)
         uint64_t claimed;
     } cases[] = {
         {"positions.npy", "(2, 2, 3)", "unpacks to 1099511627776 bytes", 12, 1ull << 40},
-        {"positions.npy", "(2, 2, 3)", "does not unpack to its 10 bytes", 12, 10},
+        {"positions.npy", "(2, 2, 3)", "does not unpack to the 10 bytes", 12, 10},
         {"x.npy", "(2, 2)", "no array of floats of shape (strands, points, 3)", 4, 0},
         {"positions.npy", "(2, 2, 3)", "FILE: positions.npy: byte", 3, 0},
-        {"points.npy", "(3, 3)", "3 points without strands: expected --points-per-strand", 9, 0},
+        {"points.npy", "(3, 3)", "where its strands end (3 points): expected --points-per-strand",
+         9, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Archive archive = {.count = 0};

@@ -186,7 +186,7 @@ static void malformed_text_is_refused_with_its_line(void **state)
         {"numStrands 2\nis sorted 1\n" STRAND, "FILE:6: the file ends after 1 of 2 strands"},
         {"numStrands 1\nis sorted 1\n" STRAND STRAND,
          "FILE:6: expected the end of the file behind the last strand, got 'strand'"},
-        {"version 2.0\nscale 0\n", "FILE:2: scale 0 leaves no hair"},
+        {"version 2.0\nscale 0\n", "FILE:2: scale 0: expected another number than 0"},
         {"version 2.0\ncolour 1\n", "FILE:2: expected is, got 'colour'"},
         {"scale 1.#INF\n", "FILE:1: expected the scale, got '1.#INF'"},
         {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n0 0 0\n",
@@ -264,7 +264,7 @@ static void strict_refuses_what_would_be_mended(void **state)
     assert_int_equal(reading_text(&strands, DIRTY, &strict, &report, &error), RESULT_BAD_INPUT);
     assert_string_equal(error.text,
                         "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km "
-                        "(refused: --strict)");
+                        "(refused because of --strict)");
     assert_false(strands_report_is_clean(&report));
     assert_int_equal(
         reading_text(&strands, "numStrands 1\nis sorted 1\n" STRAND, &strict, &report, &error),
@@ -446,9 +446,10 @@ static void the_guess_is_one_line(void **state)
         const char *line;
     } CASES[] = {
         {{.unit_used = 0.01f, .unit_guessed = true, .up_guessed = true, .up_z = true},
-         "a.hair: guessed a unit of 0.01 m and z up: --unit and --up say otherwise\n"},
-        {{.unit_used = 0.001f, .unit_guessed = true}, "a.hair: guessed a unit of 0.001 m: --unit "},
-        {{.unit_used = 1, .up_guessed = true, .up_z = true}, "a.hair: guessed z up: --up say"},
+         "a.hair: guessed a unit of 0.01 m and z up: set --unit and --up if this is wrong\n"},
+        {{.unit_used = 0.001f, .unit_guessed = true},
+         "a.hair: guessed a unit of 0.001 m: set --unit if "},
+        {{.unit_used = 1, .up_guessed = true, .up_z = true}, "a.hair: guessed z up: set --up if"},
         {{.unit_used = 1, .unit_guessed = true, .up_guessed = true}, ""}, // stays silent
         {{.unit_used = 1}, ""},
     };

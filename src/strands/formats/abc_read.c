@@ -227,7 +227,8 @@ static void describe_times(const Abc *abc, Times times, FormatSource *source)
     source->fps = rate;
     source->first_frame = first > 0 && first < 1e7 ? (int)(first + 0.5) : 0;
     if (!even && abc->all_frames)
-        format_source_note(source, "samples at uneven distances: frames are between them");
+        format_source_note(source,
+                           "samples at unequal intervals: frames are interpolated between them");
 }
 
 // --- Strands.
@@ -374,11 +375,12 @@ static Result make_strands(Abc *abc, FormatSource *source, Strands *sets)
 static void note_choices(const Abc *abc, FormatSource *source)
 {
     if (abc->hidden)
-        format_source_note(source, "left out: %u objects of curves that are hidden", abc->hidden);
-    if (abc->guides) format_source_note(source, "left out: %u guides (groom_guide)", abc->guides);
+        format_source_note(source, "%u hidden objects of curves are left out", abc->hidden);
+    if (abc->guides)
+        format_source_note(source, "%u guides are left out (groom_guide)", abc->guides);
     if (abc->lost_widths)
         format_source_note(source,
-                           "left out: widths: expected width, or groom_width, of all objects");
+                           "widths are left out: expected width or groom_width in all objects");
 }
 
 static void destroy(Abc *abc)
@@ -399,9 +401,10 @@ static Result read(FormatSource *source, Reader *reader)
     if (alembic_open(&abc.alembic, reader) == RESULT_OK) read_all(&abc);
     if (reader_ok(reader) && abc.count == 0) {
         reader->at = 0;
-        reader_fail(reader, abc.hidden   ? "all curves are hidden"
-                            : abc.meshes ? "meshes without hair: a mesh stands behind --mesh"
-                                         : "no curves: expected a groom");
+        reader_fail(reader, abc.hidden ? "all curves are hidden"
+                            : abc.meshes
+                                ? "meshes without hair: expected hair; a mesh is given with --mesh"
+                                : "no curves: expected hair");
     }
     if (reader_ok(reader)) sets = calloc((size_t)abc.count + 1, sizeof *sets);
     if (reader_ok(reader) && !sets) reader_fail_memory(reader);

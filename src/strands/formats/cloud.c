@@ -55,16 +55,16 @@ static uint32_t guess(FormatSource *source, Reader *reader, const float (*positi
             if (count % p == 0 && fits(jump, jumps, count, p)) size = p;
         if (!size)
             reader_fail(reader,
-                        "%u points without strands, which jump at %u places and not after equally "
-                        "many: expected --points-per-strand N",
+                        "the file does not say where its strands end, and the gaps between its %u "
+                        "points do not show it (%u gaps): expected --points-per-strand N",
                         count, jumps);
     }
     free(steps);
     free(jump);
     if (size)
         format_source_note(source,
-                           "%u points a strand, found from where points jump: --points-per-strand "
-                           "says otherwise",
+                           "%u points per strand, found from gaps between points: set "
+                           "--points-per-strand if this is wrong",
                            size);
     return size;
 }
@@ -76,10 +76,15 @@ uint32_t cloud_find_size(FormatSource *source, Reader *reader, const float (*pos
     if (!reader_ok(reader)) return 0;
     source->used_points = true;
     if (size == 1 || (size && count % size))
-        reader_fail(reader, "%u points are no strands of %u points each: --points-per-strand",
+        reader_fail(reader,
+                    "%u points cannot be divided into strands of %u points: expected another "
+                    "--points-per-strand",
                     count, size);
     if (size == 0 && count < 4)
-        reader_fail(reader, "%u points without strands: expected --points-per-strand N", count);
+        reader_fail(reader,
+                    "the file does not say where its strands end (%u points): expected "
+                    "--points-per-strand N",
+                    count);
     if (!reader_ok(reader)) return 0;
     return size ? size : guess(source, reader, positions, count);
 }

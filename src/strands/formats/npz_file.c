@@ -197,7 +197,7 @@ static void read_scalar(Npz *npz, const char *name, double least, double *value)
         bool good = npy_array_is_number(&held.array) && held.array.count == 1;
         double number = good ? npy_array_number(&held.array, 0) : (double)NAN;
         if (!(number >= least && number <= 1e9))
-            reader_fail(npz->reader, "'%s' is no single number from %g to 1e9", name, least);
+            reader_fail(npz->reader, "'%s': expected one number from %g to 1e9", name, least);
         else
             *value = number;
     }
@@ -215,7 +215,7 @@ static void read_up(Npz *npz)
         uint32_t wide = array->kind == 'U' ? 4 : 1;
         char c = text ? (char)array->data[array->big ? wide - 1 : 0] : 0;
         if (array->item != wide || !c || !strchr("yzYZ", c))
-            reader_fail(npz->reader, "'up' is neither 'y' nor 'z'");
+            reader_fail(npz->reader, "'up': expected 'y' or 'z'");
         else
             npz->source->up = c == 'z' || c == 'Z' ? UP_Z : UP_Y;
     }
@@ -233,7 +233,7 @@ static int find_positions(Npz *npz, Held *held)
     int file = wanted ? find_name(npz, wanted) : -1;
     npz->source->used_array = true;
     if (wanted && file < 0) {
-        reader_fail(npz->reader, "no array '%s': --array", wanted);
+        reader_fail(npz->reader, "no array '%s': expected another --array", wanted);
         return -1;
     }
     for (int i = 0; i < 2 && !wanted && file < 0; i++) file = find_name(npz, names[i]);
@@ -241,9 +241,10 @@ static int find_positions(Npz *npz, Held *held)
     for (uint32_t i = 0; i < npz->zip.count && reader_ok(npz->reader); i++) {
         if (hold(npz, i, held) != RESULT_OK) return -1;
         if (held->array.axes == 3 && layout_of(&held->array).vertices) {
-            format_source_note(npz->source,
-                               "positions are the array '%.40s': --array says otherwise",
-                               npz->zip.file[i].name);
+            format_source_note(
+                npz->source,
+                "positions are taken from the array '%.40s': set --array if this is wrong",
+                npz->zip.file[i].name);
             return (int)i;
         }
         npz->used[i] = false;
@@ -269,7 +270,7 @@ static uint32_t *read_sizes(Npz *npz, Layout *layout)
         double size = npy_array_is_number(&held.array) ? npy_array_number(&held.array, s) : -1;
         if (!(size >= 1 && size <= (double)(layout->vertices - sum) && size == floor(size))) {
             reader_fail(npz->reader,
-                        "'sizes' has no %llu whole numbers from 1 that add up to %llu points",
+                        "'sizes': expected %llu whole numbers from 1 up that add up to %llu points",
                         (unsigned long long)layout->strands, (unsigned long long)layout->vertices);
             break;
         }
@@ -277,7 +278,7 @@ static uint32_t *read_sizes(Npz *npz, Layout *layout)
         sum += sizes[s];
     }
     if (reader_ok(npz->reader) && sum != layout->vertices)
-        reader_fail(npz->reader, "'sizes' add up to %llu points, there are %llu",
+        reader_fail(npz->reader, "'sizes' add up to %llu points: expected %llu",
                     (unsigned long long)sum, (unsigned long long)layout->vertices);
     drop(npz, &held);
     return sizes;
@@ -356,7 +357,7 @@ static void read_frames(Npz *npz)
         bool good = array->kind == 'f' && array->axes >= 3 && count > 0 && count < 10000000 &&
                     array->count == count * each && array->shape[array->axes - 1] == 3;
         if (!good)
-            reader_fail(npz->reader, "'frames' does not have %u points in each frame",
+            reader_fail(npz->reader, "'frames': expected %u points in each frame",
                         source->strands.vertex_count);
         source->samples = good ? (uint32_t)count : 0;
         if (good && source->wishes.all_frames) {

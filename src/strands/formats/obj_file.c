@@ -57,7 +57,7 @@ static uint32_t read_corner(Obj *obj)
         if (index >= 1 && index <= obj->read) return (uint32_t)index - 1;
     }
     *reader = before;
-    reader_fail_expected(reader, "a vertex's number, of those that stand before this line");
+    reader_fail_expected(reader, "the number of a vertex that is defined before this line");
     return 0;
 }
 
@@ -100,8 +100,8 @@ static Result make_room(Obj *obj)
 {
     Reader *reader = obj->reader;
     if (obj->lines == 0)
-        return reader_fail(
-            reader, "a Wavefront file without lines (l), not hair: a mesh stands behind --mesh");
+        return reader_fail(reader, "a Wavefront file without lines (l), not hair: expected hair; a "
+                                   "mesh is given with --mesh");
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
         return reader_fail(reader, "more vertices or lines than 32-bit indices hold");
     TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));

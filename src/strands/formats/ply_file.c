@@ -130,8 +130,10 @@ static void read_edges(Ply *ply, const PlyElement *element)
         double a = fmin(values[PLY_VERTEX1], values[PLY_VERTEX2]);
         double b = fmax(values[PLY_VERTEX1], values[PLY_VERTEX2]);
         if (!(a >= 0 && b <= last && b == a + 1))
-            reader_fail(reader, "edge %u joins vertices %.0f and %.0f: expected neighbours of %u",
-                        e, values[PLY_VERTEX1], values[PLY_VERTEX2], ply->vertices->count);
+            reader_fail(
+                reader,
+                "edge %u joins vertices %.0f and %.0f: expected consecutive ones of the file's %u",
+                e, values[PLY_VERTEX1], values[PLY_VERTEX2], ply->vertices->count);
         if (reader_ok(reader)) ply->joined[(size_t)a] = 1;
     }
 }
@@ -168,7 +170,8 @@ static void refuse_mesh(Ply *ply)
         const PlyElement *element = &ply->file.element[i];
         if (element->count &&
             (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
-            reader_fail(ply->reader, "a mesh of %u faces, not hair: a mesh stands behind --mesh",
+            reader_fail(ply->reader,
+                        "a mesh of %u faces, not hair: expected hair; a mesh is given with --mesh",
                         element->count);
     }
 }
@@ -207,12 +210,12 @@ static void set_sizes(Ply *ply, uint32_t size)
             end++;
         }
         if (end > strands->vertex_count)
-            reader_fail(ply->reader, "strands of more vertices than there are: %llu of %u",
+            reader_fail(ply->reader, "the strands need %llu vertices or more, the file has %u",
                         (unsigned long long)end, strands->vertex_count);
         strands->first[s + 1] = (uint32_t)end;
     }
     if (reader_ok(ply->reader) && end != strands->vertex_count)
-        reader_fail(ply->reader, "strands of %llu vertices in all, the file has %u",
+        reader_fail(ply->reader, "the strands need %llu vertices in all, the file has %u",
                     (unsigned long long)end, strands->vertex_count);
 }
 

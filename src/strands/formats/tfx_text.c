@@ -90,7 +90,8 @@ static void read_parameter(Reader *reader, Head *head)
         head->version = read_finite(reader, "the version");
     } else if (reader_take(reader, "scale")) {
         head->scale = read_finite(reader, "the scale");
-        if (reader_ok(reader) && head->scale == 0.0f) reader_fail(reader, "scale 0 leaves no hair");
+        if (reader_ok(reader) && head->scale == 0.0f)
+            reader_fail(reader, "scale 0: expected another number than 0");
     } else if (reader_take(reader, "rotation")) {
         read_finite3(reader, head->rotation, "an angle of rotation");
     } else if (reader_take(reader, "translation")) {

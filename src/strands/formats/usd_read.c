@@ -143,7 +143,8 @@ static uint32_t find_times(const Usd *usd, FormatSource *source, UsdTimes *times
     if (usd->wishes.all_frames && times->count > 1) usd_times_even_out(times, usd->reader);
     if (times->evened)
         format_source_note(source,
-                           "time samples at uneven distances: frames are the time codes %g to %g",
+                           "time samples at unequal intervals: frames are interpolated at equal "
+                           "ones, from time code %g to %g",
                            times->time[0], times->time[times->count - 1]);
     return in_file;
 }
@@ -234,11 +235,11 @@ static void note_choices(const Usd *usd, FormatSource *source)
     uint32_t idle = usd_stage_count_idle(&usd->stage);
     if (usd->left_out)
         format_source_note(source,
-                           "left out: %u prims of curves that are inactive, invisible, abstract or "
-                           "of purpose guide or proxy",
+                           "%u prims of curves are left out: they are inactive, invisible, "
+                           "abstract or of purpose guide or proxy",
                            usd->left_out);
     if (usd->other_curves)
-        format_source_note(source, "left out: %u prims of NURBS or Hermite curves",
+        format_source_note(source, "%u prims of NURBS or Hermite curves are left out",
                            usd->other_curves);
     if (idle) format_source_note(source, "%u transforms without xformOpOrder have no effect", idle);
 }
@@ -252,8 +253,9 @@ static Result read(FormatSource *source, Reader *reader)
     if (reader_ok(reader) && usd.curves_count == 0)
         reader_fail(reader,
                     *source->note ? "no BasisCurves with points (%s)"
-                    : usd.meshes  ? "meshes without hair: a mesh stands behind --mesh%s"
-                                  : "no BasisCurves with points%s",
+                    : usd.meshes
+                        ? "meshes without hair: expected hair; a mesh is given with --mesh%s"
+                        : "no BasisCurves with points%s",
                     source->note);
     Strands *sets = calloc((size_t)usd.curves_count + 1, sizeof *sets);
     if (!sets) reader_fail_memory(reader);
