@@ -100,7 +100,7 @@ AGAIN = @$(MAKE) --no-print-directory
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
 
-all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) library ## the programs and the library (default)
+all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) library ## build the programs and the library (default)
 tests: $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)
 	@:
 
@@ -142,7 +142,7 @@ SHARED  := -shared -Wl,-soname,libtractrix.so.0 -Wl,--version-script=src/library
 ifeq ($(SANITIZE_$(CONFIG)),)
 SHARED  += -Wl,-z,defs
 endif
-library: $(LIBRARY) ## libtractrix.so.0, libtractrix.a and tractrix.pc
+library: $(LIBRARY) ## build libtractrix.so.0, libtractrix.a and tractrix.pc
 $(OUT)/lib/libtractrix.so.0: $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a src/library/tractrix.map
 	$(call run,LINK,$(CC) $(LD_FLAGS) $(SHARED) -o $@ $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a $(LD_LIBS))
 $(OUT)/lib/libtractrix.so: $(OUT)/lib/libtractrix.so.0
@@ -211,12 +211,12 @@ $(FOLDERS):
 	@mkdir -p $@
 
 # --- Targets for people. Set-up runs first and then starts make again, because the flags above call pkg-config.
-demo: ## set-up, build, and render the bundled scene to out/demo/
+demo: ## install missing packages, build, and render the bundled scene to out/demo/
 	@scripts/setup build run
 	$(AGAIN) $(JOBS) all
 	@scripts/demo $(OUT) out/demo
 
-test: ## set-up, build, and run all tests (ONLY=name: some of them)
+test: ## install missing packages, build, and run all tests (ONLY=NAME: tests with NAME in their name)
 	@scripts/setup build run test python
 	$(AGAIN) $(JOBS) all tests
 	@tests/runner $(OUT) $(ONLY)
@@ -225,31 +225,31 @@ test: ## set-up, build, and run all tests (ONLY=name: some of them)
 # as Short.
 MOHAWK := ../shared/assets/ratboy_mohawk.tfx
 SHORT   = $(OUT)/short_37747x8.tfx
-bench: all ## print the table of benchmarks (BENCH="FILE... --size 1280x720": more hair, drawing)
+bench: all ## measure solvers and renderer, print a table (BENCH="FILE... --size 1280x720": other hair, drawing, too)
 	@$(if $(wildcard $(MOHAWK)),,echo "bench: no $(MOHAWK): without the thesis's Mohawk")
 	@$(OUT)/tractrix-gen --kind fur --count 37747 --vertices 8 -q -o $(SHORT)
 	$(OUT)/tractrix-bench speed --part memory,sets $(wildcard $(MOHAWK)) $(SHORT) $(BENCH)
 
 IMAGES = $(wildcard ../shared/assets/ratboy_mohawk.tfx)
-bench-image: all ## image error and milliseconds of every scheme: table, out/image.csv, diagrams (IMAGES=FILE...: more hair)
+bench-image: all ## measure image error and time of every rasteriser: out/image.csv and diagrams (IMAGES=FILE...: other hair)
 	@scripts/setup build run plot
 	$(OUT)/tractrix-bench images $(IMAGES) --csv out/image.csv
 	@scripts/plot-image out/image.csv out/image
 
 STRESS = --cases 5000 --steps 10000 --seed 1
-stress: all ## random circumstances for every solver until a rule breaks, an hour or so (STRESS="--algo chain --seed 2")
+stress: all ## run random scenes with every solver until a rule breaks: an hour or so (STRESS="--algo chain --seed 2")
 	scripts/stress $(OUT)/tractrix-bench $(STRESS)
 
 # Works on a copy of the tree. An interrupted run continues.
-mutate: ## whether tests catch small faults, put in one at a time, hours (MUTATE="--only split"; tests/mutants.txt)
+mutate: ## put small faults into the code, one at a time; check that a test fails: hours (MUTATE="--only split")
 	@scripts/setup build run test python
 	@scripts/mutate $(MUTATE)
 
 SEED = 1
-torture: all tests ## every call of small runs fails in turn, 200 kills: an hour or so (SEED=N, TORTURE_OPTIONS="--only convert")
+torture: all tests ## let every system call of small runs fail in turn, kill 200 runs: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
-growth: all tests ## 10,000 scenes and simulations of the library and 100 devices: what stays: half an hour or more
+growth: all tests ## make 10,000 scenes and simulations and 100 devices with the library, count memory that stays: half an hour
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
 
 # --- Static checks and the sanitizers. All of them run, then the failed ones are named. A single one: make
@@ -259,7 +259,7 @@ C_FILES = $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/*/*.[ch] glsl/*/* tests/g
 SIDE   := $(if $(filter command line,$(origin OUT)),$(OUT)/,out/)
 QUIET   = $(AGAIN) $(JOBS) --silent
 
-check: ## static checks, warnings as errors with gcc and clang, tests under sanitizers
+check: ## run static checks, warnings of gcc and clang as errors, and the tests under sanitizers
 	@scripts/setup build run test python check
 	@failed=; for step in $(CHECKS); do echo "check: $$step"; \
 	    $(MAKE) --no-print-directory check-$$step || failed="$$failed $$step"; done; \
@@ -294,7 +294,7 @@ ROUNDED = ^test_(solver_|solvers|shadow|renderer|image_reference|collision|follo
 check-rounding:
 	$(QUIET) all tests
 	@TEST_ASSUME=ulps=2 tests/runner $(OUT) '$(ROUNDED)'
-drivers: all ## draw with other OpenGL drivers that need no GPU, softpipe and zink, and compare: 20 minutes
+drivers: all ## render with softpipe and zink, which need no GPU, and compare with llvmpipe: 20 minutes
 	@scripts/setup build run gpu
 	@scripts/check-drivers $(OUT)
 check-farm: # GNU parallel and a Slurm of one node, which make test does without
@@ -313,27 +313,27 @@ check-sanitize:
 # once.
 THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|library_device|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
 check-threads: export TSAN_OPTIONS = suppressions=$(CURDIR)/tests/tsan.supp exitcode=66
-check-threads: ## data races of the threaded parts, by ThreadSanitizer: some minutes (ONLY=name: some tests)
+check-threads: ## find data races of the threaded parts by ThreadSanitizer: some minutes (ONLY=NAME)
 	@scripts/setup build run test python
 	$(QUIET) CONFIG=threads OUT=$(SIDE)threads all tests
 	@tests/runner $(SIDE)threads '$(or $(ONLY),$(THREADED))'
 	@$(if $(ONLY),,scripts/run-threads $(SIDE)threads)
-check-analyzer: ## gcc -fanalyzer over all of src: some minutes
+check-analyzer: ## run gcc -fanalyzer over src: some minutes
 	@scripts/setup build
 	$(QUIET) CONFIG=analyzer WERROR=1 OUT=$(SIDE)analyzer all
-check-tidy: ## clang-tidy over src, with the checks of .clang-tidy: some minutes
+check-tidy: ## run clang-tidy over src, with the checks of .clang-tidy: some minutes
 	@scripts/setup build lint
 	$(QUIET) all
 	@scripts/check-tidy $(SIDE)tidy -std=c11 -D_GNU_SOURCE -I. -Isrc -Iglsl -I$(OUT) $(INCLUDES)
 
 TIME = 60
-fuzz: all ## feed mutated bytes to every reader, TIME seconds each (60; ONLY="png cache": these)
+fuzz: all ## feed mutated bytes to every reader, TIME seconds each [60] (ONLY="png cache": only these)
 	@scripts/setup build run check
 	@command -v clang >/dev/null || { echo "fuzz: no clang here: expected clang with libFuzzer" >&2; exit 1; }
 	$(QUIET) CONFIG=fuzz OUT=$(SIDE)fuzz $(SIDE)fuzz/tests/fuzz/fuzz
 	@scripts/fuzz --time $(TIME) $(OUT) $(SIDE)fuzz $(ONLY)
 
-coverage: ## lines of the readers and writers that the tests run: at least 90 % (ONLY=name: some tests)
+coverage: ## check that the tests run 90 % of the lines of all readers and writers (ONLY=NAME)
 	@scripts/setup build run test python
 	$(QUIET) CONFIG=coverage OUT=$(SIDE)coverage all tests
 	@find $(SIDE)coverage -name '*.gcda' -delete
@@ -341,24 +341,24 @@ coverage: ## lines of the readers and writers that the tests run: at least 90 % 
 	@scripts/coverage $(SIDE)coverage
 
 # --- Packages. They take minutes and are not part of `make check`.
-deb: ## Debian packages in out/deb (dpkg-buildpackage), linted
+deb: ## build Debian packages in out/deb and check them with lintian
 	@scripts/setup deb
 	@scripts/make-deb out/deb
-check-deb: deb ## install them in a clean root, run the programs, purge them (as root); build them again: the same bytes
+check-deb: deb ## install the Debian packages in a clean root, run the programs, remove them; build them again: same bytes (as root)
 	@scripts/check-deb out/deb
 	@umask 077; TZ=Asia/Tokyo scripts/make-deb out/deb-again/elsewhere
 	@for file in out/deb/*.deb; do cmp $$file out/deb-again/elsewhere/$${file##*/} || exit 1; done; echo "check-deb: built twice, the same bytes"
 # The version that the programs print.
 SAID = $$(sed -n 's/.*_VERSION "\(.*\)"/\1/p' $(OUT)/version.h)
-tarball: all ## an archive that runs where it is unpacked, out/tarball/*.tar.gz (Debian 12, Ubuntu 22.04 and newer)
+tarball: all ## pack an archive that runs where it is unpacked: out/tarball/*.tar.gz (Debian 12, Ubuntu 22.04 and newer)
 	@scripts/setup python
 	@rm -rf out/tarball && mkdir -p out/tarball
 	+$(QUIET) install PREFIX= DESTDIR=$(CURDIR)/out/tarball/root
 	@scripts/make-tarball out/tarball "$(SAID)"
-wheel: all ## the Python module with its libraries, out/wheel/*.whl
+wheel: all ## build the Python module with its libraries: out/wheel/*.whl
 	@scripts/setup python
 	@scripts/make-wheel $(OUT) out/wheel "$(SAID)"
-check-release: tarball ## unpack it in a clean root and run it (as root, with mmdebstrap)
+check-release: tarball ## unpack the archive in a clean root and run the programs (as root, with mmdebstrap)
 	@if [ "$$(id -u)" != 0 ] || ! command -v mmdebstrap >/dev/null; then \
 	    echo "check-release: not root, or no mmdebstrap (scripts/setup deb): skipped, the archive was only made"; exit 0; fi; \
 	scripts/check-tarball out/tarball/*.tar.gz
@@ -374,11 +374,11 @@ check-abi: $(OUT)/abi/libtractrix.so.0
 	    { echo "check-abi: programs may no longer run: expected new functions and members at the end of structs; make update-abi once that is so"; exit 1; }
 update-abi: $(OUT)/abi/libtractrix.so.0
 	@$(ABIDW) --out-file $(ABI) $<
-check-container: ## go through the Containerfile without a container engine (as root)
+check-container: ## run the steps of the Containerfile without a container engine (as root)
 	@scripts/setup deb
 	@scripts/check-container
 
-format: ## clang-format all C and GLSL files
+format: ## run clang-format on all C and GLSL files
 	clang-format -i $(C_FILES)
 
 # --- Installation.
@@ -401,7 +401,7 @@ completion_name_fish := %.fish
 completion_name_zsh := _%
 EXAMPLES := $(wildcard examples/* examples/*/* examples/*/*/*)
 
-install: all $(MANUALS) $(COMPLETIONS) ## programs, library, manuals, completion, docs, assets and examples under $(DESTDIR)$(PREFIX)
+install: all $(MANUALS) $(COMPLETIONS) ## install programs, library, manuals, completion, docs, assets and examples under $(DESTDIR)$(PREFIX)
 	install -d $(BIN_DIR) $(MAN_DIR) $(bash_DIR) $(fish_DIR) $(zsh_DIR) $(DATA_DIR) $(DOC_DIR)/docs
 	install $(PROGRAMS) $(SCRIPTS) $(BIN_DIR)
 	install -d $(LIB_DIR)/pkgconfig $(INCLUDE_DIR)
@@ -420,7 +420,7 @@ install: all $(MANUALS) $(COMPLETIONS) ## programs, library, manuals, completion
 	ln -sfn ../../tractrix $(DOC_DIR)/assets
 	$(foreach file,$(EXAMPLES),$(if $(wildcard $(file)/.),,install -D -m $(if $(shell test -x $(file) && echo x),755,644) $(file) $(DOC_DIR)/$(file) &&)) true
 
-uninstall: ## remove what install put there
+uninstall: ## remove what `make install` installed
 	rm -f $(addprefix $(LIB_DIR)/,$(LIBRARY:$(OUT)/lib/%=%)) $(INCLUDE_DIR)/tractrix.h
 	rm -f $(addprefix $(BIN_DIR)/,$(notdir $(PROGRAMS) $(SCRIPTS))) $(addprefix $(MAN_DIR)/,$(notdir $(MANUALS)))
 	rm -f $(foreach file,$(COMPLETIONS),$(call completion_of,$(file)))
@@ -430,7 +430,7 @@ uninstall: ## remove what install put there
 clean: ## remove out/
 	rm -rf out
 
-help: ## this list
+help: ## print this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 24
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 

@@ -25,11 +25,11 @@ OWNERS: pytest.StashKey[dict[str, str]] = pytest.StashKey()
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("tractrix", "image regression with tractrix")
     group.addoption("--tractrix-update", action="store_true",
-                    help="write golden images that are missing or differ; their tests fail in this run all the same")
+                    help="write golden images that are missing or differ; in this run their tests still fail")
     group.addoption("--tractrix-results", metavar="DIR",
-                    help="folder for images that differ and their page; tractrix-pairs in it is made anew (default: tractrix-results in the root)")
-    parser.addini("tractrix_goldens", "folder of golden images, from that of the test file", default="goldens")
-    parser.addini("tractrix_results", "as --tractrix-results, from the root", default="tractrix-results")
+                    help="folder for images that differ and for the HTML page that shows them; each run deletes its subfolder tractrix-pairs (default: tractrix-results in the root folder of pytest)")
+    parser.addini("tractrix_goldens", "folder of golden images, relative to the folder of the test file", default="goldens")
+    parser.addini("tractrix_results", "as --tractrix-results, relative to the root folder of pytest", default="tractrix-results")
 
 
 def results_of(config: pytest.Config) -> pathlib.Path:
@@ -38,7 +38,7 @@ def results_of(config: pytest.Config) -> pathlib.Path:
 
 
 def is_worker(config: pytest.Config) -> bool:
-    """Whether this is a worker of pytest-xdist; the controller keeps the results."""
+    """Whether this process is a worker of pytest-xdist. Only the controller deletes and reports results."""
     return hasattr(config, "workerinput")
 
 
@@ -49,7 +49,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 class ImageCheck:
-    """The object that the fixture returns."""
+    """What the fixture `tractrix_image` returns."""
 
     def __init__(self, request: pytest.FixtureRequest) -> None:
         self._config = request.config
@@ -63,9 +63,9 @@ class ImageCheck:
     def check(self, image: ImageLike, *, name: str | None = None, mask: ImageLike | None = None,
               pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
               max_flip: float | None = None) -> None:
-        """Fails unless `image` matches its golden within the limits of tractrix.compare; without limits it must be
-        equal. The golden is goldens/MODULE/TEST.png beside the test file, TEST-NAME.png with a `name`, .exr for floats.
-        A missing golden is a failure; only --tractrix-update writes goldens."""
+        """Fails unless `image` matches its golden within the limits of tractrix.compare. Without limits the two must be
+        equal. The golden is goldens/MODULE/TEST.png in the folder of the test file, TEST-NAME.png if `name` is given,
+        and .exr for an image of floats. A missing golden is a failure; only --tractrix-update writes goldens."""
         __tracebackhide__ = True
         from . import compare
         from ._image import read_image, rgba
@@ -73,28 +73,28 @@ class ImageCheck:
         new = rgba("image", image)
         file = file_name(self._test, name) + (".exr" if new.dtype.kind == "f" else ".png")
         if file in self._names:
-            pytest.fail(f"{file}: checked before in this test: expected name=... for each of several images")
+            pytest.fail(f"{file}: this test has already checked an image: expected a different name=... for each image")
         self._names.add(file)
         golden = self._goldens / file
         owner = self._config.stash[OWNERS].setdefault(self._flat(golden), self._id)
         if owner != self._id:
-            pytest.fail(f"{file}: {owner} has a golden of this name: expected another name of the test, its parameters or name=...")
+            pytest.fail(f"{file}: {owner} has a golden of the same name: expected another name of the test, other parameters or name=...")
         if not golden.exists():
             self._fail(golden, new, "no golden")
         old = read_image(golden)
         if old.shape != new.shape:
-            self._fail(golden, new, f"{new.shape[1]}x{new.shape[0]}, its golden {old.shape[1]}x{old.shape[0]}")
+            self._fail(golden, new, f"{new.shape[1]}x{new.shape[0]}, but the golden has {old.shape[1]}x{old.shape[0]}")
         if old.dtype != new.dtype:
-            self._fail(golden, new, f"{new.dtype}, its golden {old.dtype}")
+            self._fail(golden, new, f"{new.dtype}, but the golden has {old.dtype}")
         result = compare(new, old, mask=mask, pixel_tolerance=pixel_tolerance, max_failing_percent=max_failing_percent,
                          max_flip=max_flip)
         if not result.same:
-            self._fail(golden, new, f"{result.failing} of {result.compared} pixels differ, most {result.largest:.3g} levels at "
+            self._fail(golden, new, f"{result.failing} of {result.compared} pixels differ, at most by {result.largest:.3g} levels at "
                                     f"{result.at[0]},{result.at[1]}, FLIP {result.flip:.4f}")
 
     def _flat(self, golden: pathlib.Path) -> str:
-        """The name of a golden image in PAIRS, unique over all test files: FOLDER.MODULE.TEST.png, where FOLDER is the
-        test file's folder."""
+        """The file name of a golden in PAIRS: FOLDER.MODULE.TEST.png, where FOLDER is the folder of the test file. It is
+        unique over all test files."""
         return f"{file_name(self._module, None)}.{golden.name}"
 
     def _fail(self, golden: pathlib.Path, new: Any, what: str) -> None:
@@ -105,7 +105,7 @@ class ImageCheck:
         if self._config.getoption("--tractrix-update"):
             golden.parent.mkdir(parents=True, exist_ok=True)
             write_image(golden, new)
-            pytest.fail(f"{shown}: {what}: written anew: look at it, commit it, and run again", pytrace=False)
+            pytest.fail(f"{shown}: {what}: golden written: look at it, commit it, and run again", pytrace=False)
         results = results_of(self._config)
         flat = self._flat(golden)
         for folder in (GOLDENS, IMAGES):
@@ -113,7 +113,7 @@ class ImageCheck:
         write_image(results / IMAGES / flat, new)
         if golden.exists():
             shutil.copyfile(golden, results / GOLDENS / flat)
-        pytest.fail(f"{shown}: {what}: expected the same image (new: {results / IMAGES / flat}; --tractrix-update accepts it)",
+        pytest.fail(f"{shown}: {what}: expected the same image (the new one is {results / IMAGES / flat}; --tractrix-update makes it the golden)",
                     pytrace=False)
 
 
@@ -138,7 +138,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         write_report(results)
         line += os.sep + REPORT
     except FileNotFoundError:
-        line += f" (no page: no {COMPARE} in PATH, TRACTRIX_BIN or the package)"
+        line += f" (no page: {COMPARE} is not in PATH, TRACTRIX_BIN or the package)"
     except subprocess.CalledProcessError as error:
         line += f" (no page: {error.stderr.strip()})"
     terminalreporter.section("images")
@@ -149,7 +149,7 @@ COMPARE = "tractrix-compare"
 
 
 def compare_program() -> str:
-    """tractrix-compare from this package (in wheels), TRACTRIX_BIN or PATH."""
+    """The path of tractrix-compare: in this package (in wheels), in TRACTRIX_BIN or in PATH."""
     beside = pathlib.Path(__file__).with_name(COMPARE)
     if beside.exists():
         return str(beside)
@@ -158,7 +158,7 @@ def compare_program() -> str:
 
 
 def write_report(results: pathlib.Path) -> None:
-    """Writes the page. It needs no limits: all images in PAIRS have already failed their tests."""
+    """Writes the HTML page. No limits are given, since all images in PAIRS have already failed their tests."""
     done = subprocess.run([compare_program(), "-q", str(results / GOLDENS), str(results / IMAGES), "--html", str(results / REPORT)],
                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode > 1:  # 1: images differ

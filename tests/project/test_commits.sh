@@ -3,7 +3,7 @@
 # scripts/check-commits finds each kind of fault in a commit message, and none in good messages.
 . tests/support/claims.sh
 program=$work/here/scripts/check-commits
-mkdir -p "$work/here/src" "$work/here/scripts" && cp scripts/check-commits "$work/here/scripts/"
+mkdir -p "$work/here/src" "$work/here/scripts" && cp scripts/check-commits scripts/help.sh "$work/here/scripts/"
 cd "$work/here" || exit 1
 
 claim 'without a history it says so'

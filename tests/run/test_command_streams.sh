@@ -95,7 +95,7 @@ done
 
 claim "wrong streams are refused before anything is drawn"
 # shellcheck disable=SC2086
-run 2 $hair -q -o -.mp4; one_line; says "standard output takes"
+run 2 $hair -q -o -.mp4; one_line; says "for standard output, or"
 # shellcheck disable=SC2086
 run 2 $hair -q -o - --stats -; one_line; says "--stats"
 # shellcheck disable=SC2086
@@ -149,7 +149,7 @@ in_file "$work/err" "1 image: 1 different"; in_file "$work/stream" '"rmse"'
 if [ "$(head -c 1 "$work/stream")" = "{" ] && ! grep -q "image: " "$work/stream"; then good; else bad "lines among the JSON"; fi
 "$compare" "$work/one.exr" "$work/one.exr" --junit - 2>"$work/err" </dev/null | head -n 1 >"$work/stream"; in_file "$work/stream" "<?xml"
 "$compare" "$work/f_0.png" "$work/f_2.png" --heatmap - 2>"$work/err" </dev/null >"$work/stream"; is_png "$work/stream"
-program=$compare; run 2 "$work/one.exr" "$work/one.exr" --json - --junit -; one_line; says "expected one"
+program=$compare; run 2 "$work/one.exr" "$work/one.exr" --json - --junit -; one_line; says "expected at most one"
 # shellcheck disable=SC2086
 if "$bin/tractrix-render" $hair -q -o -.exr 2>"$work/err" | "$compare" -q "$work/one.exr" /dev/stdin 2>>"$work/err"; then
     good
