@@ -128,7 +128,7 @@ Result groom_stage_create(GroomStage *stage, const Gpu *gpu, const GroomSetup *s
     TRY(read_scene(stage, setup, error));
     TRY(read_assets(stage, setup, error));
     if (setup->shaking) TRY(start_shaking(stage, error));
-    const Mesh *mesh = assets_have_mesh(&stage->assets) ? stage->assets.meshes : NULL;
+    const Mesh *mesh = stage->assets.meshes->vertex_count ? stage->assets.meshes : NULL;
     TRY(simulation_create(&stage->simulation, gpu, &stage->timer, &stage->scene,
                           stage->assets.strands, mesh, error));
     TRY(groom_shape_create(&stage->shape, &stage->simulation.sections[0].hair,

@@ -231,13 +231,6 @@ void assets_destroy(Assets *assets)
     *assets = (Assets){0};
 }
 
-bool assets_have_mesh(const Assets *assets)
-{
-    bool any = false;
-    for (uint32_t b = 0; b < assets->body_count; ++b) any = any || assets->meshes[b].vertex_count;
-    return any;
-}
-
 Result assets_check(const Scene *scene, FILE *stream)
 {
     Result worst = RESULT_OK;

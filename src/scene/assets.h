@@ -24,9 +24,6 @@ typedef struct Assets {
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);
 
-// Whether any body has a mesh.
-bool assets_have_mesh(const Assets *assets);
-
 // Implements --check: reads the file of every section and prints its report, or the reason why it
 // cannot be read, on `stream`. RESULT_OK if all are clean, RESULT_FAILED if any has defects,
 // RESULT_BAD_INPUT if any cannot be read. Everything is printed, so there is no `error`.

@@ -227,12 +227,10 @@ static bool is_default(const ParamInfo *info, const void *params)
 }
 
 // Where an element's own keys stand in the scene file.
-static SectionPlace place_of(const Scene *scene, ParamScope scope, uint32_t element)
+static ElementPlace place_of(const Scene *scene, ParamScope scope, uint32_t element)
 {
-    SectionPlace place = {""};
-    if (scope == SCOPE_SECTION) return scene_section_place(scene, element);
-    snprintf(place.text, sizeof place.text, "bodies[%u]", element);
-    return place;
+    return scope == SCOPE_SECTION ? scene_section_place(scene, element)
+                                  : scene_body_place(scene, element, "");
 }
 
 void effects_warn(const Scene *scene, FILE *stream)

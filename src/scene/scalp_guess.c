@@ -70,15 +70,15 @@ static Result fit_sections(ScalpFit *fit, const Scene *scene, const SceneBody *b
 
 // If the scalp does not have the size of a head, suggests the unit for which it would have: a named
 // unit if one is near.
-static void suggest_unit(FILE *messages, const ScalpFit *fit, double unit)
+static void suggest_unit(FILE *messages, const char *place, const ScalpFit *fit, double unit)
 {
     static const struct {
         const char *word;
         double metres;
     } named[] = {{"m", 1}, {"in", 0.0254}, {"cm", 0.01}, {"mm", 0.001}};
     double wanted = unit * HEAD_RADIUS[0] / fit->radius[0];
-    fprintf(messages, "the scalp is %.2g m wide, a head's %.2g m: with --unit ", 2 * fit->radius[0],
-            2 * HEAD_RADIUS[0]);
+    fprintf(messages, "%sthe scalp is %.2g m wide, a head's %.2g m: with --unit ", place,
+            2 * fit->radius[0], 2 * HEAD_RADIUS[0]);
     for (size_t i = 0; i < sizeof named / sizeof *named; ++i)
         if (fabs(log(wanted / named[i].metres)) < log(UNLIKE)) {
             fprintf(messages, "%s it is as wide\n", named[i].word);
@@ -87,18 +87,20 @@ static void suggest_unit(FILE *messages, const ScalpFit *fit, double unit)
     fprintf(messages, "%.2g it is as wide\n", wanted);
 }
 
-static void report(FILE *messages, const ScalpFit *fit, double unit, bool verbose)
+// `place`: of the body, before a message.
+static void report(FILE *messages, const char *place, const ScalpFit *fit, double unit,
+                   bool verbose)
 {
     if (fit->found)
         fprintf(messages,
-                "scalp: guessed a head of %.3g x %.3g x %.3g m at %.3g, %.3g, %.3g, %.2g mm from "
+                "%sscalp: guessed a head of %.3g x %.3g x %.3g m at %.3g, %.3g, %.3g, %.2g mm from "
                 "the roots: --scalp none leaves it out\n",
-                2 * fit->radius[0], 2 * fit->radius[1], 2 * fit->radius[2], fit->centre[0],
+                place, 2 * fit->radius[0], 2 * fit->radius[1], 2 * fit->radius[2], fit->centre[0],
                 fit->centre[1], fit->centre[2], 1e3 * fit->error);
     else if (verbose || fit->other_size)
-        fprintf(messages, "scalp: none: %s\n", fit->reason);
+        fprintf(messages, "%sscalp: none: %s\n", place, fit->reason);
     if ((fit->found || fit->other_size) && fabs(log(fit->radius[0] / HEAD_RADIUS[0])) > log(UNLIKE))
-        suggest_unit(messages, fit, unit);
+        suggest_unit(messages, place, fit, unit);
 }
 
 // Fits a head to the hair of a body without a mesh.
@@ -109,7 +111,9 @@ static Result guess(Scene *scene, uint32_t b, Assets *assets, FILE *messages, bo
     ScalpFit fit = {0};
     if (assets->meshes[b].vertex_count) return RESULT_OK;
     TRY(fit_sections(&fit, scene, body, assets, error));
-    if (messages) report(messages, &fit, (double)assets->reports[body->first].unit_used, verbose);
+    if (messages)
+        report(messages, scene_body_place(scene, b, ": ").text, &fit,
+               (double)assets->reports[body->first].unit_used, verbose);
     if (!fit.found) return RESULT_OK;
     TRY(make_mesh(&assets->meshes[b], &fit, error));
     if (!body->params.collide_mesh) return RESULT_OK;

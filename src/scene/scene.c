@@ -136,15 +136,19 @@ const SceneBody *scene_body_of(const Scene *scene, uint32_t section)
     return body;
 }
 
-SectionPlace scene_section_place(const Scene *scene, uint32_t section)
+ElementPlace scene_body_place(const Scene *scene, uint32_t body, const char *then)
 {
-    SectionPlace place;
+    ElementPlace place = {""};
+    if (scene->lists_bodies) snprintf(place.text, sizeof place.text, "bodies[%u]%s", body, then);
+    return place;
+}
+
+ElementPlace scene_section_place(const Scene *scene, uint32_t section)
+{
     const SceneBody *body = scene_body_of(scene, section);
-    int length = 0;
-    if (scene->body_count > 1)
-        length = snprintf(place.text, sizeof place.text, "bodies[%u].",
-                          (unsigned)(body - scene->bodies));
-    snprintf(place.text + length, sizeof place.text - (size_t)length, "sections[%u]",
+    ElementPlace place = scene_body_place(scene, (uint32_t)(body - scene->bodies), ".");
+    size_t length = strlen(place.text);
+    snprintf(place.text + length, sizeof place.text - length, "sections[%u]",
              section - body->first);
     return place;
 }

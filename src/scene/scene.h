@@ -102,6 +102,7 @@ typedef struct Scene {
     uint8_t origin[SCENE_PARAMS]; // an Origin for each run parameter of the table
     SceneBody bodies[SCENE_MAX_BODIES];
     uint32_t body_count;
+    bool lists_bodies; // the scene file has a list of bodies
     Section *sections; // [section_count], owned; body by body
     uint32_t section_count;
     Track gravity;                  // width 3, m/s2; if not given, run.gravity
@@ -163,11 +164,13 @@ uint8_t *scene_origins(const Scene *scene, ParamScope scope, uint32_t element);
 // The body that a section is on.
 const SceneBody *scene_body_of(const Scene *scene, uint32_t section);
 
-// Where a section stands in the scene file: "sections[2]", "bodies[1].sections[0]".
-typedef struct SectionPlace {
+// Where a body or a section stands in the scene file, for messages: "bodies[1]" with `then` behind
+// it, or nothing if the file has no list of bodies; "sections[2]" or "bodies[1].sections[0]".
+typedef struct ElementPlace {
     char text[48];
-} SectionPlace;
-SectionPlace scene_section_place(const Scene *scene, uint32_t section);
+} ElementPlace;
+ElementPlace scene_body_place(const Scene *scene, uint32_t body, const char *then);
+ElementPlace scene_section_place(const Scene *scene, uint32_t section);
 
 // Whether neither file nor command line set a parameter of the run.
 bool scene_has_default(const Scene *scene, const char *name);

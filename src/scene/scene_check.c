@@ -104,8 +104,7 @@ static Result check_heads(const Scene *scene, double time, Error *error)
     for (uint32_t i = 0; i < scene->body_count; ++i) {
         Result result = rigid_track_check(&scene->bodies[i].head, time, error);
         if (result == RESULT_OK) continue;
-        error_prefix(error, result, "head.");
-        return scene->body_count == 1 ? result : error_prefix(error, result, "bodies[%u].", i);
+        return error_prefix(error, result, "%shead.", scene_body_place(scene, i, ".").text);
     }
     return RESULT_OK;
 }

@@ -283,6 +283,7 @@ static Result read_list(Scene *scene, const Document *document, const json_t *ar
         if (json_object_get(document->json, BESIDE[i]))
             return json_fail(&document->root, error,
                              "'%s' beside 'bodies': expected this key in a body", BESIDE[i]);
+    scene->lists_bodies = true;
     SceneBody first = scene->bodies[0];
     scene->bodies[0] = (SceneBody){0};
     Result result = RESULT_OK;

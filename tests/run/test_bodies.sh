@@ -4,13 +4,14 @@
 . tests/support/claims.sh
 program=$bin/tractrix-render
 
-# A ball that swells over two samples, and one that turns and carries a collider.
+# A ball that swells over two samples, and a bigger one that turns and carries a collider.
 awk '/^v / { printf "v %.7g %.7g %.7g\n", 1.05 * $2 + 0.01, 1.1 * $3, $4; next } { print }' assets/ball.obj >"$work/ball_1.obj"
 cp assets/ball.obj "$work/ball_0.obj"
 cp assets/ball.obj assets/curls.tfx "$work/"
-one='"mesh": "ball_%d.obj", "sections": [{"file": "curls.tfx", "algo": "split", "followers": 1}]'
-two='"mesh": "ball.obj", "head": {"translate": [0.3, "0.05*sin(20*t)", 0], "rotate": [0, "200*t", 0]},
-     "colliders": [{"sphere": [0, -0.15, 0.1, 0.05]}], "sections": [{"file": "curls.tfx", "algo": "chain", "followers": 1}]'
+one='"mesh": "ball_%d.obj", "sections": [{"file": "curls.tfx", "algo": "split", "followers": 1, "color": "#a03010"}]'
+two='"mesh": "big.obj", "head": {"translate": [0.3, "0.05*sin(20*t)", 0], "rotate": [0, "200*t", 0]},
+     "colliders": [{"sphere": [0, -0.15, 0.1, 0.05]}], "sections": [{"file": "curls.tfx", "algo": "chain", "followers": 1, "color": "#1030a0"}]'
+awk '/^v / { printf "v %.7g %.7g %.7g\n", 1.2 * $2, 1.2 * $3, 1.2 * $4; next } { print }' assets/ball.obj >"$work/big.obj"
 run='"frames": 4, "fps": 24, "sim_rate": 60, "size": "48x32", "look": "plain", "mesh_fps": 24, "sdf_resolution": 16, "sdf_cache": false'
 echo "{$run, $one}" >"$work/one.json"
 echo "{$run, $two}" >"$work/two.json"
@@ -54,7 +55,7 @@ holds "$bin/tractrix-compare" -q "$work/direct/frame_0003.png" "$work/swapped/fr
 claim "what one body changes is found by the cache"
 sed 's/200\*t/190*t/' "$both" >"$work/other.json"
 run 3 "$work/other.json" -q --from-cache "$work/a.cache" -o "$work/x/"; one_line; says "bodies[1].head"
-awk '/^v / { printf "v %s %s %s\n", $2, $3 + 0.001, $4; next } { print }' assets/ball.obj >"$work/ball.obj"
+awk '/^v / { printf "v %s %s %s\n", $2, $3 + 0.001, $4; next } { print }' assets/ball.obj >"$work/big.obj"
 run 3 "$both" -q --from-cache "$work/a.cache" -o "$work/x/"; one_line; says "bodies[1].mesh_checksum"
 
 claim "what a list of bodies cannot be is refused by one line with the place"
@@ -72,9 +73,17 @@ refused "{\"bodies\": [{$hair, \"style\": 3}]}" "bodies[0]: 'style' belongs to t
 refused '{"bodies": [{"sections": [{"file": "curls.tfx", "mesh": "ball.obj"}]}]}' "bodies[0].sections[0]: 'mesh' belongs to the top level or to a body, not to a section"
 refused "{\"bodies\": [{$hair}, {$hair, \"head\": {\"translate\": [\"1/t\", 0, 0]}}]}" "bodies[1].head."
 refused "{\"bodies\": [{$hair, \"mesh\": \"none.obj\"}]}" "none.obj"
+refused "{\"bodies\": [{$hair, \"head\": {\"translate\": [\"1/t\", 0, 0]}}]}" "bodies[0].head."
+refused '{"bodies": [{"sections": [{"file": "curls.tfx", "drag": {"formula": "1/t"}}]}]}' "bodies[0].sections[0].drag"
+
+claim "a body without a mesh is told which head it gets"
+echo "{\"look\": \"plain\", \"scalp\": \"auto\", \"frames\": 1, \"size\": \"32x24\", \"bodies\": [{$hair}, {$hair, \"mesh\": \"ball.obj\"}]}" >"$work/bald.json"
+run 0 "$work/bald.json" -o "$work/bald.png"; says "bodies[0]: scalp: guessed a head of"
 
 claim "keys of a body that have no effect are named, shared keys only if they have none in any body"
 echo "{\"look\": \"plain\", \"frames\": 1, \"size\": \"32x24\", \"bodies\": [{$hair, \"mesh\": \"ball.obj\"}, {$hair, \"mesh\": \"ball.obj\", \"mesh_fps\": 12}]}" >"$work/idle.json"
 run 0 "$work/idle.json" -o "$work/idle.png"; says "idle.json: bodies[1].mesh_fps: has no effect: --mesh does not deform"
+echo "{\"look\": \"plain\", \"frames\": 1, \"size\": \"32x24\", \"mesh_fps\": 12, \"bodies\": [{$hair, \"mesh\": \"ball.obj\"}]}" >"$work/idle.json"
+run 0 "$work/idle.json" -o "$work/idle.png"; says "idle.json: mesh_fps: has no effect: --mesh does not deform"
 run 0 "$both" --last 0 -o "$work/idle/"; if grep -q mesh_fps "$work/err"; then bad "warns"; else good; fi
 finish
