@@ -52,6 +52,8 @@ static void keys_and_formulas_give_values(void **state)
     assert_true(section_tracks_stamp(tracks, &params) != stamp);
     section_tracks_apply(tracks, 0, &params);
     assert_true(section_tracks_stamp(tracks, &params) == stamp);
+    params.color[2] = 0.5f; // the last component alone
+    assert_true(section_tracks_stamp(tracks, &params) != stamp);
     section_tracks_greatest(tracks, 2, 61, &params);
     assert_true(params.style == 0.5f && params.drag == 5);
     // The scene can be written and read back.
@@ -67,14 +69,18 @@ static void keys_and_formulas_give_values(void **state)
 
 static void keys_for_all_sections_give_way_to_a_sections_own(void **state)
 {
-    temporary_write(state, "s.json",
-                    "{\"drag\": {\"formula\": \"t\"}, \"sections\": [{\"file\": \"a.tfx\"}, "
-                    "{\"file\": \"b.tfx\", \"drag\": 2}]}",
-                    0644);
+    temporary_write(
+        state, "s.json",
+        "{\"drag\": {\"keys\": [{\"time\": 0, \"value\": 0}, {\"time\": 1, \"value\": 4}], "
+        "\"interpolation\": \"linear\"}, \"sections\": [{\"file\": \"a.tfx\"}, "
+        "{\"file\": \"b.tfx\", \"drag\": 2}]}",
+        0644);
     Scene scene;
     Error error;
     assert_int_equal(scene_read(&scene, temporary_path(state, "s.json"), &error), RESULT_OK);
     assert_int_equal(scene.sections[0].tracks.count, 1);
+    section_tracks_apply(&scene.sections[0].tracks, 0.25, &scene.sections[0].params);
+    assert_true(scene.sections[0].params.drag == 1);
     assert_int_equal(scene.sections[1].tracks.count, 0);
     assert_true(scene.sections[1].params.drag == 2);
     scene_destroy(&scene);

@@ -11,8 +11,7 @@
 enum { COLUMNS = 14, ROWS = 6 };
 static const float CELL = 0.02f;
 
-// Makes a sheet through the fixture's roots: x from 0 to 0.2, y 1.6, z about 0.
-static void make_sheet(Mesh *mesh)
+void body_fixture_make_sheet(Mesh *mesh)
 {
     assert_int_equal(mesh_create(mesh, (COLUMNS + 1) * (ROWS + 1), 2 * COLUMNS * ROWS, NULL),
                      RESULT_OK);
@@ -47,17 +46,14 @@ void body_fixture_sample(MeshSequence *sequence, const Mesh *rest, BodyMotion *m
         }
 }
 
-void body_fixture_create(BodyFixture *fixture, const char *algo, const char *variant,
-                         BodyMotion *motion, double rate, double start, uint32_t count)
+void body_fixture_bind(BodyFixture *fixture, BodyMotion *motion, double rate, double start,
+                       uint32_t count)
 {
     MeshSequence sequence;
     const Mesh none = {0};
     Error error;
-    *fixture = (BodyFixture){0};
-    simulation_fixture_create(&fixture->base, algo, variant);
     Scene *scene = &fixture->base.scene;
     rigid_track_destroy(&scene->bodies[0].head);
-    make_sheet(&fixture->mesh);
     body_fixture_sample(&sequence, &fixture->mesh, motion, rate, start, count);
     const BodyOptions options = {"sheet", scene->run.teleport_distance, scene->run.teleport_angle,
                                  false};
@@ -67,6 +63,15 @@ void body_fixture_create(BodyFixture *fixture, const char *algo, const char *var
     scene->bodies[0].shape = &fixture->body;
     scene->bodies[0].head.samples = &fixture->body.head;
     body_middle(&fixture->body, scene->bodies[0].head.pivot);
+}
+
+void body_fixture_create(BodyFixture *fixture, const char *algo, const char *variant,
+                         BodyMotion *motion, double rate, double start, uint32_t count)
+{
+    *fixture = (BodyFixture){0};
+    simulation_fixture_create(&fixture->base, algo, variant);
+    body_fixture_make_sheet(&fixture->mesh);
+    body_fixture_bind(fixture, motion, rate, start, count);
 }
 
 void body_fixture_destroy(BodyFixture *fixture)
