@@ -33,8 +33,8 @@ class Parameters(TypedDict, total=False):
     """samples of a deforming mesh per second; auto: as its file says, otherwise --fps [0.001 to 100000 1/s; default
     auto]"""
     mesh_start: float
-    """time of a deforming mesh's first sample; before it the first sample holds, after the last sample the last one
-    [-1000000 to 1000000 s; default 0]"""
+    """time of a deforming mesh's first sample; before it the mesh has the pose of the first sample, after the last
+    sample the last pose [-1000000 to 1000000 s; default 0]"""
     mesh_motion: Literal["smooth", "linear"]
     """interpolation between two samples of a deforming mesh: smooth (cubic splines) or linear [default smooth]"""
     mesh_unit: Union[float, str]
@@ -54,8 +54,8 @@ class Parameters(TypedDict, total=False):
     style: Union[float, Numbers, str]
     """how much hair keeps its rest shape: 0 loose, 1 rigid [0 to 1; default 0.5]"""
     rest: Literal["groom", "hanging"]
-    """rest shape of hair with a style: groom, the shape in the file, which gravity does not change while the head is as
-    at time 0; hanging, the shape that the groom takes under its weight [default groom]"""
+    """rest shape of hair with a style: groom, the shape in the file, in balance with gravity at time 0; hanging, the
+    shape that the groom takes under its weight [default groom]"""
     style_stiffness: Union[float, Numbers, str]
     """stiffness towards the rest shape at style 0.5; at other styles multiplied by style/(1 - style) [0 to 1000000000
     1/s2; default 200; of chain, hybrid, emulation, rope, dftl]"""
@@ -220,8 +220,8 @@ class Parameters(TypedDict, total=False):
     """how fibres scatter light: kajiya (cheap, empirical) or marschner (measured; light passes through the fibre)
     [default marschner]"""
     color: Union[Numbers, str]
-    """visible color (albedo) of a whole head of hair, sRGB, as are colors of files, maps and tips; also --albedo; or
-    (vertices, 3 or 4), linear RGB and opacity of each [0 to 1; default #5e3f2b]"""
+    """visible color of a whole head of hair, sRGB; colors of files, maps and tips have the same meaning; --albedo is
+    another name; or (vertices, 3 or 4), linear RGB and opacity of each [0 to 1; default #5e3f2b]"""
     transmission: Union[Numbers, str]
     """physical alternative to --color: color of light after one fibre diameter, sRGB; auto: computed from --color [0 to
     1; default auto]"""
@@ -242,7 +242,7 @@ class Parameters(TypedDict, total=False):
     tip_length: float
     """share of the strand, from the tip, over which the color changes to --tip-color; 0: none [0 to 1; default 0]"""
     radius: Union[float, Literal["auto"]]
-    """fibre radius at the root; auto: so that on average 3 fibres cover each point of the hair, but not thicker than
+    """fibre radius at the root; auto: so that on average 3 fibres cover each point of the hair, but at most as thick as
     still looks like a fibre [1e-07 to 1 m; default auto]"""
     tip_ratio: float
     """radius at the tip divided by the radius at the root [0 to 1; default 0.3]"""
@@ -336,8 +336,8 @@ class Parameters(TypedDict, total=False):
     mesh_color: Union[Numbers, str]
     """color of the mesh, sRGB [0 to 1; default #a67f6b]"""
     scalp_tint: float
-    """how far the color of the mesh goes towards that of the hair where roots cover it densely; 0: not at all [0 to 1;
-    default 0.8]"""
+    """largest share of the hair's color in the color of the mesh, reached where roots cover it densely; 0: none [0 to
+    1; default 0.8]"""
     mesh_shading: Literal["matt", "skin"]
     """surface of the mesh: matt, or skin, with a soft highlight and a soft shadow edge [default skin]"""
     background: Union[Numbers, str]

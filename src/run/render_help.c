@@ -70,7 +70,7 @@ static const char *const SCENE_KEYS[][3] = {
     {"camera",
      "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
      "\"fov\": 30}, ...]}",
-     "path of the camera; for values that are in no key, the option of that name holds"},
+     "path of the camera; a value that is in no key is that of the option of the same name"},
     {"camera", "{\"eye\": [\"1.5*sin(t)\", 0.1, \"1.5*cos(t)\"], \"fov\": \"30-5*t\"}",
      "the same by formulas; each value has keys or formulas"},
     {"colliders",
@@ -281,9 +281,10 @@ Result render_help(const char *topic, FILE *stream, Error *error)
         .title = "Colors",
         .text =
             "Every option and key that takes a color also takes one of these names. They stand "
-            "for the sRGB values beside them. Where a name has two values, the second (of hair) "
-            "holds for --color and --tip-color: it is what a whole head of such hair shows in "
-            "light. The first, that of CSS, holds for all other colors, --transmission too.",
+            "for the sRGB values beside them. If a name has two values, --color and --tip-color "
+            "use "
+            "the second one, the visible color of a whole head of such hair; all other options, "
+            "and --transmission, use the first one, the color of CSS.",
         .entries = (const char *const(*)[3])texts->colors,
     };
     const OptionsProgram program = {
