@@ -181,9 +181,9 @@ def write_hair(path: str, hair: Hair) -> None:
 
     elif path.endswith(".tfx"):
         if not hair.even and (hair.radius is not None or hair.color is not None):
-            say(f"{path}: strands differ in their number of points: TressFX text keeps no radius or colour: --resample N does")
+            say(f"{path}: strands differ in their number of points: written as TressFX text, without radius and colour; --resample N keeps both")
         if hair.frames is not None:
-            say(f"{path}: holds the first frame alone: .npz keeps all")
+            say(f"{path}: holds only the first frame: .npz keeps all frames")
         data = tfx_binary(hair) if hair.even else tfx_text(hair).encode()
 
         def write(name: str) -> None:
@@ -280,7 +280,7 @@ def convert_hair(path: str, units: tuple = ()) -> Hair:
     name = "tractrix-convert"
     program = os.environ.get("TRACTRIX_CONVERT") or shutil.which(name) or shutil.which(name, path=beside)
     if not program:
-        raise HairError(f"{path}: tractrix-convert is needed to read it: expected it on the PATH, or its name in TRACTRIX_CONVERT", FAILED)
+        raise HairError(f"{path}: tractrix-convert is needed to read this file: expected tractrix-convert on the PATH, or its path in TRACTRIX_CONVERT", FAILED)
     with tempfile.TemporaryDirectory() as folder:
         usda = os.path.join(folder, "hair.usda")
         done = subprocess.run([program, path, *units, "-o", usda], capture_output=True, text=True, check=False)
@@ -646,9 +646,9 @@ def join(pieces: list, scene, depsgraph, surface) -> Hair:
         lacking = [p.name for p in pieces if getattr(p, name) is None]
         joined[name] = None if lacking else np.concatenate(values).astype(np.float32)
         if lacking and len(lacking) < len(pieces):
-            say(f"object '{lacking[0]}': has no {name}: that of the other objects is dropped")
+            say(f"object '{lacking[0]}': has no {name}: the {name} of the other objects is not exported")
     if joined["radius"] is not None and is_usual(joined["radius"]):
-        say(f"the radius is {joined['radius'][0]:g} everywhere, as Blender makes it where nobody has set one: it is left out")
+        say(f"the radius is {joined['radius'][0]:g} everywhere, which is Blender's default: it is not exported")
         joined["radius"] = None
     if joined["radius"] is not None:
         joined["radius"] *= np.float32(unit)
@@ -810,7 +810,7 @@ def camera_keys(context, options: ExportOptions, middle: np.ndarray) -> dict:
     """The scene file's members for the camera. Prints a warning for properties that Tractrix does not have."""
     scene, render = context.scene, context.scene.render
     if scene.camera.data.type != "PERSP":
-        raise HairError(f"camera '{scene.camera.name}': type {scene.camera.data.type}: expected PERSP, the only one that Tractrix has")
+        raise HairError(f"camera '{scene.camera.name}': type {scene.camera.data.type}: expected PERSP, the only type that Tractrix draws")
     if render.pixel_aspect_x != render.pixel_aspect_y:
         say("camera: pixels that are not square become square")
     first, last = options.frames or (scene.frame_current, scene.frame_current)
@@ -823,7 +823,7 @@ def camera_keys(context, options: ExportOptions, middle: np.ndarray) -> dict:
         scene.frame_set(first)
     start = poses[0]
     if max(abs(x) for x in start["shift"]) > 1e-6:
-        say(f"camera '{scene.camera.name}': its shift is left out: the picture is not the same")
+        say(f"camera '{scene.camera.name}': its lens shift is not exported: the picture differs from Blender's")
     keys = {
         "eye": rounded(start["eye"]),
         "target": rounded(start["target"]),
@@ -839,7 +839,7 @@ def camera_keys(context, options: ExportOptions, middle: np.ndarray) -> dict:
         ]}  # fmt: skip
         roll = max(roll_off(p, start["up"]) for p in poses)
         if roll > 0.01:
-            say(f"camera '{scene.camera.name}': it rolls by up to {roll:.2f} degrees, which is left out: up is that of the first frame")
+            say(f"camera '{scene.camera.name}': it rolls by up to {roll:.2f} degrees, which is not exported: camera_up is that of the first frame")
     return keys
 
 
@@ -882,7 +882,7 @@ def light_keys(context) -> dict:
     lamps = [o for o in context.view_layer.objects if o.type == "LIGHT" and o.visible_get() and o.data.energy > 0]
     radiance = world_radiance(scene)
     if not lamps and max(radiance) <= 0:
-        say("the scene has no light: Tractrix's own lights shine")
+        say("the scene has no light: Tractrix uses its default lights")
         return {}
     if len(lamps) > MAX_LIGHTS:
         say(f"{len(lamps)} lights: the strongest {MAX_LIGHTS} are kept")
@@ -907,7 +907,7 @@ def world_radiance(scene) -> list:
     if not node:
         return list(world.color)[:3]
     if node.inputs["Color"].is_linked:
-        say("world: its picture or sky is left out: its plain colour is taken")
+        say("world: its image or sky texture is not exported: its plain colour is used")
     return [c * node.inputs["Strength"].default_value for c in list(node.inputs["Color"].default_value)[:3]]
 
 
@@ -934,7 +934,7 @@ def map_keys(node, material, folder: str) -> dict:
     name = bpy.path.abspath(node.image.filepath) if node.type == "TEX_IMAGE" and node.image else ""
     if name.lower().endswith(".png") and os.path.exists(name):
         return {"color_map": os.path.relpath(name, folder)}
-    say(f"material '{material.name}': its colour is left out: expected a plain one, or an image texture of a PNG file")
+    say(f"material '{material.name}': its colour is not exported: expected a plain colour, or an image texture of a PNG file")
     return {}
 
 
@@ -967,7 +967,7 @@ def scene_members(context, options: ExportOptions, hair: Hair, pieces: list, hea
     if scene.camera:
         members.update(camera_keys(context, options, hair.points.astype(np.float64).mean(0)))
     else:
-        say("the scene has no camera: Tractrix chooses one")
+        say("the scene has no camera: Tractrix uses its default camera")
     members.update(light_keys(context))
     return members
 
@@ -985,7 +985,7 @@ def moving_head(roots: Optional[np.ndarray], options: ExportOptions, fps: float)
     if residual > options.tolerance:
         say(f"{place}: roots are {residual:.3g} m off a rigid motion, more than {options.tolerance:g} m: no head is written")
         if not options.mesh:
-            say("the hair stands still: expected --mesh x.npz, the deforming body that it is bound to")
+            say("the hair will not move: expected --mesh x.npz for the deforming body to which it is bound")
         return None
     say(f"the head's rigid motion: {len(roots)} keys, roots at most {residual:.3g} m off ({place})")
     return head
@@ -1174,7 +1174,7 @@ def radius_for(path: str, units: tuple, count: int) -> Optional[np.ndarray]:
     try:
         return np.full(count, convert_hair(path, units).radius.mean(), np.float32)
     except HairError as error:
-        say(f"{error}: the radius is left to Blender")
+        say(f"{error}: Blender's default radius is used")
         return None
 
 
@@ -1246,9 +1246,9 @@ def place_camera(context, members: dict, times: np.ndarray) -> None:
     """A camera with the pose and the vertical field of view of a scene file."""
     track = members.get("camera", {})
     if any(k in track for k in ("eye", "target", "fov")):
-        say("the camera moves by formulas, which Blender does not read: they are left out")
+        say("the camera moves by formulas: they are not imported")
     if not isinstance(members.get("eye"), list) and not any("eye" in k for k in track.get("keys", [])):
-        say("the scene file leaves the camera to Tractrix: no camera is made")
+        say("the scene file has no camera: none is imported")
         return
     scene, unit = context.scene, unit_of(context.scene)
     eye, target = (to_z_up(track_values(track, k, times, members.get(k, [0, 0, 0]))) / unit for k in ("eye", "target"))
@@ -1307,7 +1307,7 @@ def place_body(context, path: str, members: dict) -> None:
     if members.get("mesh_up", about.get("up", "y")) == "z":
         positions = to_y_up(positions)
     if members.get("head"):
-        say("the head's keys do not move a mesh that deforms here: it moves by its samples alone")
+        say("the mesh deforms: its samples move it, the keys of the head do not")
     fps = frames_per_second(scene)
     rate = members.get("mesh_fps", about.get("fps", fps))
     rate = fps if rate == "auto" else float(rate)
@@ -1327,7 +1327,7 @@ def place_mesh(context, path: str, members: dict, times: np.ndarray) -> None:
     bpy.ops.wm.obj_import(filepath=path, **axes)
     head = members.get("head", {})
     if any(isinstance(head.get(k), list) for k in ("translate", "rotate")):
-        say("the head moves by formulas, which Blender does not read: the mesh stands still")
+        say("the head moves by formulas, which are not imported: the mesh does not move")
     pivot = np.array(head.get("pivot", [0, 0, 0]), np.float64)
     move, turn = (track_values(head, k, times, [0, 0, 0]) for k in ("translate", "rotate"))
     count = len(times) if head.get("keys") else 1
@@ -1365,7 +1365,7 @@ def import_scene(context, path: str) -> None:
     times = np.arange(count) / fps * float(members.get("speed", 1))
     place_camera(context, members, times)
     if "lights" not in members:
-        say("the scene file leaves the lights to Tractrix: none are made")
+        say("the scene file has no lights: none are imported")
     for number, light in enumerate(members.get("lights", [])):
         place_light(context, light, number)
     if "mesh" in members:
@@ -1375,7 +1375,7 @@ def import_scene(context, path: str) -> None:
         elif mesh.endswith(".obj") and "%" not in mesh:
             place_mesh(context, mesh, members, times)
         else:
-            say(f"{mesh}: the mesh is left out: expected .obj or .npz")
+            say(f"{mesh}: the mesh is not imported: expected .obj or .npz")
     world = scene.world = scene.world or bpy.data.worlds.new("World")
     world.use_nodes = False
     if "sky" in members:

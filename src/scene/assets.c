@@ -82,10 +82,11 @@ static void warn_apart(const Body *body, FILE *messages)
 {
     float apart = body_distance(body);
     if (messages && apart > BODY_APART)
-        fprintf(messages,
-                "%s: half of the roots are more than %.3g mm from the mesh (is it the one that the "
-                "hair was groomed on? --mesh-rest)\n",
-                quote(body->name).text, 1e3 * (double)apart);
+        fprintf(
+            messages,
+            "%s: half of the roots are more than %.3g mm from the mesh: expected the mesh on which "
+            "the hair was groomed (--mesh-rest)\n",
+            quote(body->name).text, 1e3 * (double)apart);
 }
 
 // A body to be loaded, and the results.
