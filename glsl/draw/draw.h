@@ -35,6 +35,7 @@
 #define BIND_MIDDLE_DEPTH 6 // depth of the mesh at pixel centres
 #define BIND_EDGE_DEPTH   7 // depths of the mesh at several samples a pixel
 #define BIND_TINT         8 // factors of the mesh's colour
+#define BIND_ONTO         9 // six vec4 a cell: the light of hair on skin, see kernel/onto.h
 
 #define BIND_PAINT     8  // uvec4 a particle, see look_paint; used together with shadows
 #define BIND_SCATTER   10 // the table for Marschner shading, see scatter.comp

@@ -18,10 +18,14 @@
 #define BIND_LIGHT_PLANES_OUT 3 // vec4, see light_sweep.comp
 #define BIND_LIGHT_ALL_OUT    3 // vec4 a slot and ordinate: the light of all orders
 #define BIND_LIGHT_SEEN_OUT   3 // three float a point of the hair
+#define BIND_LIGHT_FACES_OUT  3 // six vec4 a cell, see kernel/onto.h
 #define BIND_LIGHT_DEPTH_OUT  4 // float a slot and ordinate: optical depth over a side
-#define BIND_LIGHT_SOURCE_OUT 5 // three float an ordinate and slot: light that hair sends
-#define BIND_LIGHT_ORDER_OUT  6 // likewise: light of the last order
-#define BIND_LIGHT_TOTAL_OUT  7 // likewise: light of all orders so far
+#define BIND_LIGHT_SOURCE_OUT                                                                      \
+    5                          // three float an ordinate and slot: light that hair sends; then, on
+                               // skin, the same summed over all orders
+#define BIND_LIGHT_ORDER_OUT 6 // likewise: light of the last order
+#define BIND_LIGHT_ONTO_OUT  6 // four halves an ordinate and cell: light of hair alone
+#define BIND_LIGHT_TOTAL_OUT 7 // likewise: light of all orders so far
 
 // Textures of float, beside those of hair (shared.h), its paint and its shadows.
 #define BIND_LIGHT_TABLES  1 // see LIGHT_TANGENT_AT
@@ -85,7 +89,7 @@ UNIFORM_BLOCK(LightParams, light_params, BIND_LIGHT)
     uint classes;             // classes of tangents of all kinds
     uint room;                // slots
     uint plane;               // cells of a plane, see light_sweep.comp
-    uint walled;              // 1: there is a mesh among the cells
-    uint tinted;              // 1: some hair is painted
+    uint walled; // 1: there is a mesh among the cells; 2: skin, which takes hair's light
+    uint tinted; // 1: some hair is painted
 }
 END_BLOCK(LightParams, light_params);

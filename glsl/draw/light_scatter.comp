@@ -9,7 +9,7 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(binding = BIND_LIGHT_SCATTER) uniform samplerBuffer scatter;
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; };
 layout(std430, binding = BIND_LIGHT_STATE_OUT) readonly buffer State { LightState state; };
-layout(std430, binding = BIND_LIGHT_SOURCE_OUT) writeonly buffer Source { float source[]; };
+layout(std430, binding = BIND_LIGHT_SOURCE_OUT) buffer Source { float source[]; };
 layout(std430, binding = BIND_LIGHT_ORDER_OUT) readonly buffer Order { float order[]; };
 
 shared vec3 from[LIGHT_ORDINATES];
@@ -34,6 +34,8 @@ void main()
     }
     sum *= cell[slot].tint.rgb;
     for (int k = 0; k < 3; ++k) source[at + k] = sum[k];
+    for (int k = 0; k < 3 && light_params.walled == 2u; ++k)
+        source[at + sent_further() + k] += sum[k];
     // The mesh reflects its colour's share of the light equally in all directions.
     if (d == 0) cell[slot].glow.rgb = draw_params.mesh_color.rgb * mean / float(LIGHT_ORDINATES);
 }

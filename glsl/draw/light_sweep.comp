@@ -3,6 +3,7 @@
 // ordinate and goes slice by slice along its main axis. The light that enters a cell is
 // interpolated between cells of the slice before (bilinear).
 //   WALLED 1: a mesh blocks light between cells
+//   ONTO 1: the light of all orders that hair sends, alone, into all cells, for skin
 #include "draw/light.h"
 #include "draw/light.glsl"
 #include "draw/light_walls.glsl"
@@ -20,8 +21,12 @@ layout(std430, binding = BIND_LIGHT_STATE_OUT) buffer State
 layout(std430, binding = BIND_LIGHT_PLANES_OUT) coherent buffer Planes { vec4 plane[]; };
 layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float depth[]; };
 layout(std430, binding = BIND_LIGHT_SOURCE_OUT) readonly buffer Source { float source[]; };
+#if ONTO
+layout(std430, binding = BIND_LIGHT_ONTO_OUT) writeonly buffer Onto { uvec2 onto[]; };
+#else
 layout(std430, binding = BIND_LIGHT_ORDER_OUT) writeonly buffer Order { float order[]; };
 layout(std430, binding = BIND_LIGHT_TOTAL_OUT) buffer Total { float total[]; };
+#endif
 
 int d = int(gl_WorkGroupID.x), group = d / LIGHT_LANES, axis = group / 2;
 bool forward = group % 2 == 1;
@@ -76,12 +81,29 @@ vec3 incoming(int parity, int slice, int x, int y, int slot)
 #if WALLED
     // Replaces the light that the mesh blocks by the light that the mesh reflects.
     float passed = wall(wall_first.x, ivec3(forward ? slice : slice + 1, x, y));
-    vec3 glow = slot >= 0 && slot < int(state.filled) ? cell[slot].glow.rgb : vec3(0.0);
+    vec3 glow =
+        ONTO == 0 && slot >= 0 && slot < int(state.filled) ? cell[slot].glow.rgb : vec3(0.0);
     light = passed * light + (1.0 - passed) * glow;
 #endif
     return light;
 }
 
+#if ONTO
+void cross_onto(int at_cell, inout vec3 light, int slot)
+{
+    vec3 mean = light;
+    if (slot >= 0 && slot < int(state.filled)) {
+        int at = ordinate_address(d, slot), all = at + sent_further();
+        float tau = depth[slot * LIGHT_ORDINATES + d] * longer, left = cell_left(tau);
+        vec3 sent = vec3(source[all], source[all + 1], source[all + 2]) +
+                    state.more.rgb * vec3(source[at], source[at + 1], source[at + 2]);
+        mean = sent + (light - sent) * cell_mean_share(tau, left);
+        light = sent + (light - sent) * left;
+    }
+    onto[d * int(light_params.count.w) + at_cell] =
+        uvec2(packHalf2x16(mean.rg), packHalf2x16(vec2(mean.b, 0.0)));
+}
+#else
 void keep(int at, vec3 mean)
 {
     for (int k = 0; k < 3; ++k) {
@@ -109,12 +131,14 @@ vec3 cross_cell(vec3 light, int slot, inout vec3 sum)
     return sent + (light - sent) * left;
 }
 
+#endif
+
 shared vec3 sums[GROUP_SIZE];
 
 void main()
 {
     int lane = int(gl_LocalInvocationID.x), wide = count.y, tall = count.z;
-    if (state.done != 0u) return;
+    if (ONTO == 0 && state.done != 0u) return;
     vec4 around = vec4(sweep.y == 0 ? vec3(0.0) : light_params.around[d].rgb, 0.0);
     for (int i = lane; i < 2 * int(light_params.plane); i += GROUP_SIZE)
         plane[2 * d * int(light_params.plane) + i] = around;
@@ -125,11 +149,17 @@ void main()
         int slice = forward ? i : count.x - 1 - i;
         for (int c = lane; c < wide * tall; c += GROUP_SIZE) {
             int x = c % wide, y = c / wide,
-                slot = slots[slice * stride.x + x * stride.y + y * stride.z];
+                at_cell = slice * stride.x + x * stride.y + y * stride.z, slot = slots[at_cell];
             vec3 light = incoming(i & 1, slice, x, y, slot);
-            plane[plane_address(~i & 1, x, y)] = vec4(cross_cell(light, slot, sum), 0.0);
+#if ONTO
+            cross_onto(at_cell, light, slot);
+#else
+            light = cross_cell(light, slot, sum);
+#endif
+            plane[plane_address(~i & 1, x, y)] = vec4(light, 0.0);
         }
     }
+#if !ONTO
     sums[lane] = sum;
     for (int half_of = GROUP_SIZE / 2; half_of > 0; half_of /= 2) {
         memoryBarrierShared();
@@ -137,4 +167,5 @@ void main()
         if (lane < half_of) sums[lane] += sums[lane + half_of];
     }
     if (lane == 0) met[sweep.x * LIGHT_ORDINATES + d] = vec4(sums[0], 0.0);
+#endif
 }

@@ -2,6 +2,7 @@
 // Lights the mesh, in linear light, for each pixel whose centre shows it. Surfaces that are seen
 // from behind are lit like front faces.
 //   SKIN 0: Lambert's matt surface   1: see kernel/skin.h
+//   ONTO 1: hair sends light onto the skin
 #include "draw/draw.h"
 #define MESH_TAPS 4 // of its own shadow map, whose texels would show under grazing light
 #include "draw/lights.glsl"
@@ -11,22 +12,28 @@
 #endif
 #include "draw/shadow_surface.glsl"
 #include "draw/ray.glsl"
+#if ONTO
+#include "draw/onto.glsl"
+#endif
 
 layout(binding = BIND_SURFACE) uniform sampler2D surface;
 layout(binding = BIND_TINT) uniform sampler2D tint;
 layout(location = 0) out vec4 color; // linear
 
 // The light that the mesh, of colour `own`, shows at x with the unit normal n, where it sees the
-// share `open` of the sky.
-vec3 light_on(vec3 own, vec3 x, vec3 n, float open, vec3 to_eye)
+// share `open` of the sky, and the share `bare` without hair.
+vec3 light_on(vec3 own, vec3 x, vec3 n, float open, float bare, vec3 to_eye)
 {
-    vec3 into = vec3(lamp_around_into(open, own.r), lamp_around_into(open, own.g),
-                     lamp_around_into(open, own.b)),
-         light = draw_params.mesh_color.a * light_around(n) * into, highlight = vec3(0.0);
+    vec3 light = draw_params.mesh_color.a * light_around(n) * open, highlight = vec3(0.0);
 #if SHADOW
     x += shadow_params.mesh_lift * n; // avoids self-shadowing
     shadow_find_on(x, n);
 #endif
+#if ONTO
+    light += onto_light(x, n);
+    open = bare;
+#endif
+    light *= vec3(lamp_between(open, own.r), lamp_between(open, own.g), lamp_between(open, own.b));
     for (int i = 0; i < light_count; ++i) {
         vec3 to_light, reaching = light_reaching(i, x, to_light);
 #if SKIN
@@ -46,8 +53,8 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 seen = texelFetch(surface, pixel, 0);
-    vec3 own = draw_params.mesh_color.rgb * texelFetch(tint, pixel, 0).rgb,
-         way = ray_through(gl_FragCoord.xy),
+    vec4 tinted = texelFetch(tint, pixel, 0);
+    vec3 own = draw_params.mesh_color.rgb * tinted.rgb, way = ray_through(gl_FragCoord.xy),
          n = seen.xyz * inversesqrt(max(dot(seen.xyz, seen.xyz), 1e-20)),
          x = draw_params.eye.xyz + seen.w * way;
 #if SKIN
@@ -55,5 +62,7 @@ void main()
 #else
     const float open = 1.0;
 #endif
-    color = vec4(light_on(own, x, dot(n, way) > 0.0 ? -n : n, open, -normalize(way)), 1.0);
+    color = vec4(
+        light_on(own, x, dot(n, way) > 0.0 ? -n : n, open, min(tinted.a, 1.0), -normalize(way)),
+        1.0);
 }

@@ -43,10 +43,9 @@ SHARED_FUNCTION float lamp_bent(float xy, float yz, float zx, float level, float
            upright * (3.0f * y * y - 1.0f);
 }
 
-// The ambient light that a surface of this colour shows, over what a white, unoccluded surface
-// would show. It sees the share `open` of the sky; the rest of its view is assumed to have about
-// its own colour and brightness and to reflect light on it.
-SHARED_FUNCTION float lamp_around_into(float open, float color)
+// The factor by which light on a surface of this colour grows because surfaces like it, which hide
+// all but the share `open` of its view and have its colour and brightness, reflect light on it.
+SHARED_FUNCTION float lamp_between(float open, float color)
 {
-    return open / (1.0f - color * (1.0f - open));
+    return 1.0f / (1.0f - color * (1.0f - open));
 }

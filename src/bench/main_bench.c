@@ -237,7 +237,7 @@ static Result try_shadows(Passes *passes, Error *error)
                              i % CAST_VARIANTS, error));
     if (shadows) TRY(shadows_reserve_mesh(&passes->shadow, 1, error));
     for (int count = 0; count <= 2; count += 2) {
-        base_layer_count(&passes->base, count, shadows ? count : 0, count > 1);
+        base_layer_count(&passes->base, count, shadows ? count : 0, count > 1, shadows);
         TRY(base_layer_build_light(&passes->base, options->shadow.kind, error));
         for (int mesh = 0; mesh < 2; ++mesh)
             TRY(base_layer_build(&passes->base, mesh, options->floor.kind, options->shadow.kind,

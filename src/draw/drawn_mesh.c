@@ -31,7 +31,7 @@ void drawn_mesh_move(DrawnMesh *drawn, const Mesh *moved)
     ++drawn->version;
 }
 
-Result drawn_mesh_set_openness(DrawnMesh *drawn, const float *open, Error *error)
+Result drawn_mesh_set_openness(DrawnMesh *drawn, const float (*open)[2], Error *error)
 {
     size_t size = drawn->mesh.vertex_count * sizeof *open;
     if (!size) return RESULT_OK;

@@ -7,7 +7,7 @@
 // A zeroed struct is no mesh.
 typedef struct DrawnMesh {
     Mesh mesh;             // owned: positions, normals and triangles, in the head's frame, m
-    float *open;           // [vertices], owned: the share of the sky, see openness.h; NULL: 1
+    float (*open)[2];      // [vertices], owned: shares of the sky, see openness.h; NULL: 1
     float (*tint)[3];      // [vertices], owned: factors of the colour, see scalp_tint.h; NULL: 1
     float color[3];        // linear RGB
     float low[3], high[3]; // bounds in the head's frame, m
@@ -22,7 +22,7 @@ Result drawn_mesh_set(DrawnMesh *drawn, const Mesh *mesh, const float color[3], 
 void drawn_mesh_move(DrawnMesh *drawn, const Mesh *moved);
 
 // Copies the openness of the vertices (openness.h).
-Result drawn_mesh_set_openness(DrawnMesh *drawn, const float *open, Error *error);
+Result drawn_mesh_set_openness(DrawnMesh *drawn, const float (*open)[2], Error *error);
 
 // Copies the tint of the vertices (scalp_tint.h).
 Result drawn_mesh_set_tint(DrawnMesh *drawn, const float (*tint)[3], Error *error);

@@ -32,6 +32,7 @@ typedef struct GridScene {
     float to_eye[3];        // unit, world: opposite to the camera's direction
     int map_of[MAX_LIGHTS]; // map of each light; -1: it casts no shadow
     LightBlocks *blocks;    // how the mesh blocks light within the box of hair; NULL: no mesh
+    bool skin;              // also find the light that hair sends onto the mesh
     bool suns;              // also the light of lights is followed, not only that of the sky
     uint32_t step; // one strand of each group of this many represents them in the cells; 0: 1
     int cells;     // along the longest side of the box, 4 .. 64

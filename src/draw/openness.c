@@ -13,9 +13,10 @@ enum { SMOOTHINGS = 4 };
 typedef struct Field {
     LightLattice lattice; // aligned with the mesh's frame
     LightBlocks blocks;
-    float *depth; // [cells]: optical depth of hair over the length of a side
-    float *seen;  // [cells][ORDINATES]: share of the light that arrives from the opposite of each
-                  // ordinate; < 0: not computed yet
+    float *depth;                // [cells]: optical depth of hair over the length of a side
+    float (*seen)[ORDINATES][2]; // [cells]: share of the light that arrives from the opposite of
+                                 // each ordinate, past hair and mesh, and past the mesh alone; < 0:
+                                 // not computed yet
 } Field;
 
 static void widen(float low[3], float high[3], const float x[3])
@@ -89,10 +90,10 @@ static Result fill(Field *field, const Mesh *mesh, const OpennessHair *hair, uin
     place_lattice(&field->lattice, mesh, hair, hair_count);
     size_t cells = light_lattice_cells(&field->lattice);
     field->depth = calloc(cells, sizeof *field->depth);
-    field->seen = malloc(cells * ORDINATES * sizeof *field->seen);
+    field->seen = malloc(cells * sizeof *field->seen);
     if (!field->depth || !field->seen)
         return error_set(error, RESULT_FAILED, "no memory for %zu cells of the sky", cells);
-    for (size_t i = 0; i < cells; ++i) field->seen[i * ORDINATES] = -1;
+    for (size_t i = 0; i < cells; ++i) field->seen[i][0][0] = -1;
     for (uint32_t i = 0; i < hair_count; ++i) fill_hair(field, &hair[i]);
     field->blocks.mesh = (LightMesh){.vertices = (const float(*)[3])mesh->position,
                                      .triangles = (const uint32_t(*)[3])mesh->triangle,
@@ -114,41 +115,44 @@ static float pass_hair(const Field *field, const int cell[3], const float way[3]
     return expf(-depth);
 }
 
-static const float *see(Field *field, const int cell[3])
+static const float (*see(Field *field, const int cell[3]))[2]
 {
-    float *seen = &field->seen[cell_at(&field->lattice, cell) * ORDINATES];
-    if (seen[0] >= 0) return seen;
+    float(*seen)[2] = field->seen[cell_at(&field->lattice, cell)];
+    if (seen[0][0] >= 0) return (const float(*)[2])seen;
     for (int o = 0; o < ORDINATES; ++o) {
         const float way[3] = {-ORDINATE[0][o], -ORDINATE[1][o], -ORDINATE[2][o]};
         float past = light_blocks_march(&field->blocks, &field->lattice, cell, way, INFINITY);
-        seen[o] = past > 0 ? past * pass_hair(field, cell, way) : 0;
+        seen[o][1] = past;
+        seen[o][0] = past > 0 ? past * pass_hair(field, cell, way) : 0;
     }
-    return seen;
+    return (const float(*)[2])seen;
 }
 
-// The openness of a surface with the unit normal n in a cell. -1 if no light reaches the cell from
-// any direction, as inside the mesh.
-static float see_from(Field *field, const int cell[3], const float n[3])
+// The openness of a surface with the unit normal n in a cell. False if no light reaches the cell
+// from any direction, as inside the mesh.
+static bool see_from(Field *field, const int cell[3], const float n[3], float open[2])
 {
-    if (!is_inside(&field->lattice, cell)) return 1;
-    const float *seen = see(field, cell);
-    float sum = 0, whole = 0, any = 0;
+    open[0] = open[1] = 1;
+    if (!is_inside(&field->lattice, cell)) return true;
+    const float(*seen)[2] = see(field, cell);
+    float sum[2] = {0}, whole = 0, any = 0;
     for (int o = 0; o < ORDINATES; ++o) {
         float c = -(n[0] * ORDINATE[0][o] + n[1] * ORDINATE[1][o] + n[2] * ORDINATE[2][o]);
-        any += seen[o];
+        any += seen[o][0];
         if (c <= 0) continue;
-        sum += c * seen[o];
+        for (int k = 0; k < 2; ++k) sum[k] += c * seen[o][k];
         whole += c;
     }
-    return any > 0 ? sum / whole : -1;
+    for (int k = 0; k < 2; ++k) open[k] = sum[k] / whole;
+    return any > 0;
 }
 
 // Interpolates between the centres of the eight cells around the point that is one side h above the
 // surface. Cells without light are left out.
-static float see_at(Field *field, const float x[3], const float n[3])
+static void see_at(Field *field, const float x[3], const float n[3], float open[2])
 {
     const LightLattice *lattice = &field->lattice;
-    float share[3], sum = 0, weights = 0;
+    float share[3], sum[2] = {0}, weights = 0;
     int first[3];
     for (int k = 0; k < 3; ++k) {
         float at = (x[k] + lattice->side * n[k] - lattice->low[k]) / lattice->side - 0.5f;
@@ -163,41 +167,45 @@ static float see_at(Field *field, const float x[3], const float n[3])
             cell[k] = first[k] + on;
             weight *= on ? share[k] : 1 - share[k];
         }
-        float seen = weight > 0 ? see_from(field, cell, n) : -1;
-        if (seen < 0) continue;
-        sum += weight * seen;
+        float seen[2];
+        if (!(weight > 0) || !see_from(field, cell, n, seen)) continue;
+        for (int k = 0; k < 2; ++k) sum[k] += weight * seen[k];
         weights += weight;
     }
-    return weights > 0 ? sum / weights : 0;
+    for (int k = 0; k < 2; ++k) open[k] = weights > 0 ? sum[k] / weights : 0;
 }
 
-// Replaces each vertex's value by the mean of its own and its neighbours' values.
-static Result smooth(float *open, const Mesh *mesh, Error *error)
+// Replaces each vertex's values by the means of its own and its neighbours' values.
+static Result smooth(float (*open)[2], const Mesh *mesh, Error *error)
 {
-    float *sum = malloc((size_t)mesh->vertex_count * 2 * sizeof *sum);
+    float(*sum)[3] =
+        malloc((size_t)mesh->vertex_count * sizeof *sum); // both values, and their number
     if (!sum)
         return error_set(error, RESULT_FAILED, "no memory for %u vertices", mesh->vertex_count);
     for (int turn = 0; turn < SMOOTHINGS; ++turn) {
-        for (uint32_t v = 0; v < mesh->vertex_count; ++v) sum[2 * v] = open[v], sum[2 * v + 1] = 1;
+        for (uint32_t v = 0; v < mesh->vertex_count; ++v)
+            sum[v][0] = open[v][0], sum[v][1] = open[v][1], sum[v][2] = 1;
         for (uint32_t t = 0; t < mesh->triangle_count; ++t)
             for (int k = 0; k < 3; ++k) {
                 uint32_t v = mesh->triangle[t][k], other = mesh->triangle[t][(k + 1) % 3];
-                sum[2 * v] += open[other], sum[2 * v + 1] += 1;
-                sum[2 * other] += open[v], sum[2 * other + 1] += 1;
+                for (int n = 0; n < 2; ++n)
+                    sum[v][n] += open[other][n], sum[other][n] += open[v][n];
+                ++sum[v][2], ++sum[other][2];
             }
-        for (uint32_t v = 0; v < mesh->vertex_count; ++v) open[v] = sum[2 * v] / sum[2 * v + 1];
+        for (uint32_t v = 0; v < mesh->vertex_count; ++v)
+            for (int n = 0; n < 2; ++n) open[v][n] = sum[v][n] / sum[v][2];
     }
     free(sum);
     return RESULT_OK;
 }
 
-Result openness_find(float *open, const Mesh *mesh, const OpennessHair *hair, uint32_t hair_count,
-                     Error *error)
+Result openness_find(float (*open)[2], const Mesh *mesh, const OpennessHair *hair,
+                     uint32_t hair_count, Error *error)
 {
     Field field = {0};
     Result result = fill(&field, mesh, hair, hair_count, error);
     for (uint32_t v = 0; v < mesh->vertex_count && result == RESULT_OK; ++v)
-        open[v] = see_at(&field, mesh->position[v], mesh->normal[v]);
+        see_at(&field, mesh->position[v], mesh->normal[v], open[v]);
     THEN(result, smooth(open, mesh, error));
     light_blocks_destroy(&field.blocks);
     free(field.depth);

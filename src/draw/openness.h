@@ -14,11 +14,11 @@ typedef struct OpennessHair {
     float each;
 } OpennessHair;
 
-// open[mesh->vertex_count]: the share, 0 .. 1, of an even sky's light that reaches each vertex; 1
-// is the light without hair and mesh. Hair counts by its density in cubic cells, OPENNESS_CELLS
-// along the longest side of hair and mesh. Rays in 48 directions go from cell to cell.
-// RESULT_FAILED if memory is short.
-Result openness_find(float *open, const Mesh *mesh, const OpennessHair *hair, uint32_t hair_count,
-                     Error *error);
+// open[mesh->vertex_count]: the share, 0 .. 1, of an even sky's light that reaches each vertex past
+// hair and mesh, and the share that would reach it past the mesh alone. Hair counts by its density
+// in cubic cells, OPENNESS_CELLS along the longest side of hair and mesh. Rays in 48 directions go
+// from cell to cell. RESULT_FAILED if memory is short.
+Result openness_find(float (*open)[2], const Mesh *mesh, const OpennessHair *hair,
+                     uint32_t hair_count, Error *error);
 
 enum { OPENNESS_CELLS = 32 };

@@ -88,7 +88,7 @@ void renderer_move_mesh(Renderer *renderer, const Mesh *moved)
         renderer->backend->move_mesh(renderer->state, &renderer->mesh);
 }
 
-Result renderer_set_openness(Renderer *renderer, const float *open, Error *error)
+Result renderer_set_openness(Renderer *renderer, const float (*open)[2], Error *error)
 {
     TRY(drawn_mesh_set_openness(&renderer->mesh, open, error));
     return renderer->backend->set_mesh(renderer->state, &renderer->mesh, error);

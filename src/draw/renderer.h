@@ -48,7 +48,7 @@ void renderer_move_mesh(Renderer *renderer, const Mesh *moved);
 
 // Sets the share of the sky that each vertex of the mesh sees (openness.h). Matt meshes do not need
 // it.
-Result renderer_set_openness(Renderer *renderer, const float *open, Error *error);
+Result renderer_set_openness(Renderer *renderer, const float (*open)[2], Error *error);
 
 // Sets the factors of the mesh's colour at its vertices (scalp_tint.h). Errors as above.
 Result renderer_set_tint(Renderer *renderer, const float (*tint)[3], Error *error);

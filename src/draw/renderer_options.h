@@ -28,7 +28,8 @@ typedef struct ScatterOptions {
     int cells;        // along the longest side of the hair, 4 .. 64; 0: 32
     int orders;       // number of orders of scattering, 1 .. 32; 0: 16
     uint32_t strands; // number of strands that represent all in the cells, at least; 0: all
-    bool off;         // set by scatter_options: no light is computed
+    // Set by scatter_options: no light is computed; the mesh is skin, which takes the hair's light.
+    bool off, skin;
 } ScatterOptions;
 
 typedef struct RendererOptions {

@@ -9,6 +9,7 @@ ScatterOptions scatter_options(const RendererOptions *options)
     if (!asked.cells) asked.cells = 32;
     if (!asked.orders) asked.orders = 16;
     if (options->shadow.kind != SHADOW_DOM || options->aov != AOV_NONE) asked.off = true;
+    asked.skin = options->mesh_shading == MESH_SKIN;
     return asked;
 }
 
@@ -48,6 +49,7 @@ GridScene scatter_scene(const ScatterOptions *options, const BackendFrame *frame
                        .cells = options->cells,
                        .step = scatter_step(options, frame),
                        .suns = options->kind == SCATTER_GRID,
+                       .skin = options->kind == SCATTER_GRID && options->skin,
                        .orders = options->kind == SCATTER_NONE ? 0 : options->orders};
     for (int k = 0; k < 3; ++k) scene.to_eye[k] = frame->frame->view->view[k][2];
     for (int l = 0; l < MAX_LIGHTS; ++l) scene.map_of[l] = -1;

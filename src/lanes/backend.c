@@ -140,7 +140,7 @@ static PlacedMesh placed_mesh(const BackendFrame *frame)
     const DrawnMesh *drawn = frame->mesh;
     PlacedMesh mesh = {.position = (const float(*)[3])drawn->mesh.position,
                        .normal = (const float(*)[3])drawn->mesh.normal,
-                       .open = drawn->open,
+                       .open = (const float(*)[2])drawn->open,
                        .tint = (const float(*)[3])drawn->tint,
                        .triangle = (const uint32_t(*)[3])drawn->mesh.triangle,
                        .vertex_count = drawn->mesh.vertex_count,
@@ -210,6 +210,7 @@ static Result draw_base(Lanes *lanes, const BackendFrame *frame, Error *error)
                                  .shading = lanes->options->mesh_shading,
                                  .floor = &lanes->options->floor,
                                  .shadow = lanes->light.shadow,
+                                 .grid = lanes->light.grid,
                                  .draw = &drawing->draw,
                                  .mesh_box = drawing->mesh_box,
                                  .box = drawing->base_box};

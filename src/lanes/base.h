@@ -10,6 +10,7 @@
 
 #include "base/params.h"
 #include "lanes/block.h"
+#include "lanes/light_grid.h"
 #include "lanes/mesh_raster.h"
 #include "lanes/shadow.h"
 #include "scene/floor.h"
@@ -23,6 +24,7 @@ typedef struct LaneBaseScene {
     MeshShading shading;
     const Floor *floor;
     const LaneShadow *shadow; // shadows on mesh and floor; NULL: none
+    const LightGrid *grid;    // light that hair sends onto skin; NULL: none
     const DrawParams *draw;
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } LaneBaseScene;

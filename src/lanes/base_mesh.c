@@ -2,6 +2,7 @@
 #include "lanes/base_mesh.h"
 
 #include "lanes/base_light.h"
+#include "lanes/light_grid_onto.h"
 
 #include "glsl/kernel/skin.h"
 
@@ -13,6 +14,7 @@ enum {
 typedef struct Lighting {
     const LaneBase *base;
     const LaneShadow *shadow;
+    const LightGrid *grid; // NULL: hair sends no light onto the surface
     BaseView view;
     bool skin;
     int parts;
@@ -21,7 +23,7 @@ typedef struct Lighting {
 // The surface points of 16 px. Values of pixels without mesh are not used.
 typedef struct Points {
     float x[3][W], normal[3][W], to_eye[3][W]; // x: m; the others are unit vectors
-    float open[W];                             // visible share of the sky
+    float open[W], bare[W];                    // share of the sky that is seen, and without hair
     float color[3][W];                         // linear RGB, tinted
 } Points;
 
@@ -52,6 +54,7 @@ SIMD_INLINE void find_points(const Lighting *lighting, int x, int y, Points *poi
     for (int k = 0; k < W; ++k) {
         float square = simd_max(dot3(n, n, k), 1e-20f), unit = 1 / sqrtf(square);
         points->open[k] = simd_min(square * unit, 1);
+        points->bare[k] = simd_min(w[k] * surface->tint[3][at + (size_t)k], 1);
         unit = dot3(n, (const float(*)[W])way, k) > 0 ? -unit : unit;
         for (int c = 0; c < 3; ++c) {
             points->normal[c][k] = unit * n[c][k];
@@ -91,12 +94,16 @@ SIMD_INLINE void light_points(const Lighting *lighting, const Points *points, bo
 {
     const DrawParams *draw = lighting->view.draw;
     const float(*color)[W] = points->color;
-    float left[MAX_LIGHTS][W], to_light[3][W], share[W], diffuse[W], highlight[W], over[3][W];
+    float left[MAX_LIGHTS][W], to_light[3][W], share[W], diffuse[W], highlight[W], over[3][W],
+        sent[3][W] = {{0}};
+    bool hairy = skin && lighting->grid;
+    if (hairy) light_grid_onto(lighting->grid, points->x, points->normal, sent);
     for (int c = 0; c < 3; ++c) {
         base_around(draw, c, points->normal, light[c]);
         for (int k = 0; k < W; ++k) {
-            float open = skin ? points->open[k] : 1;
-            light[c][k] = draw->mesh_color[3] * light[c][k] * lamp_around_into(open, color[c][k]);
+            float open = skin ? points->open[k] : 1, bare = hairy ? points->bare[k] : open;
+            light[c][k] = (draw->mesh_color[3] * light[c][k] * open + sent[c][k]) *
+                          lamp_between(bare, color[c][k]);
             over[c][k] = 0;
         }
     }
@@ -142,7 +149,11 @@ SIMD_STAGE(light_rows, Lighting)
 
 void base_mesh_light(const LaneBase *base, const LaneBaseScene *scene, int parts)
 {
-    Lighting lighting = {base, scene->shadow, base_view(scene->draw), scene->shading == MESH_SKIN,
+    Lighting lighting = {base,
+                         scene->shadow,
+                         light_grid_lights_skin(scene->grid) ? scene->grid : NULL,
+                         base_view(scene->draw),
+                         scene->shading == MESH_SKIN,
                          parts};
     run_light_rows(&lighting, parts);
 }

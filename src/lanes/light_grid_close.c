@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Estimates the orders of scattering that are not swept, and adds up the light of all orders.
+// Estimates the orders of scattering that are not swept, and adds up the light of all orders, which
+// cells receive and send.
 #include "lanes/light_grid_state.h"
 
 #include <math.h>
@@ -26,6 +27,17 @@ bool light_grid_needs_more(const LightGridState *state, float all[3])
     return more;
 }
 
+// Turns a cell's source of the last order into that of all orders.
+SIMD_INLINE void close_source(const LightGridState *state, int f, const float more[3])
+{
+    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
+        float *source = grid_source(state, g, f), *sent = state->sent + (source - state->source);
+        for (int c = 0; c < 3; ++c)
+            for (int l = c * GRID_LANES; l < (c + 1) * GRID_LANES; ++l)
+                source[l] = sent[l] + more[c] * source[l];
+    }
+}
+
 SIMD_INLINE void close_lights(const LightGridState *state, int part)
 {
     float more[3];
@@ -36,6 +48,8 @@ SIMD_INLINE void close_lights(const LightGridState *state, int part)
     }
     int first = (int)((int64_t)state->active * part / state->parts),
         end = (int)((int64_t)state->active * (part + 1) / state->parts);
+    for (int s = first; s < end && s < state->filled && state->lights_skin; ++s)
+        close_source(state, s, more);
     for (size_t s = (size_t)first; s < (size_t)end; ++s)
         for (int g = 0; g < ORDINATE_GROUPS; ++g)
             for (int c = 0; c < 3; ++c) {

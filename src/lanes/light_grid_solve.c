@@ -34,6 +34,9 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     TRY(make_planes(state, error));
     TRY(light_field_make_scatter(&state->field, scene, state->class, state->filled, error));
     bool sky = light_scene_has_sky(scene->draw);
+    state->lights_skin = scene->skin && state->field.walled;
+    if (state->lights_skin)
+        memcpy(state->sent, state->source, (size_t)state->filled * GRID_WIDE * sizeof(float));
     light_grid_sweep(state, sky, true);
     float all[3] = {0};
     light_grid_needs_more(state, all);
@@ -44,6 +47,12 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
         if (order > 1 && !more) break;
     }
     light_grid_close(state, scene->orders > 1);
+    if (state->lights_skin) {
+        if (!light_grid_make_onto(state))
+            return error_set(error, RESULT_FAILED, "no memory for light of hair on skin");
+        light_grid_sweep_onto(state);
+        light_grid_sum_onto(state);
+    }
     memcpy(state->light + (size_t)state->active * GRID_WIDE, state->field.around,
            sizeof state->field.around);
     return RESULT_OK;
@@ -65,6 +74,9 @@ void light_grid_destroy(LightGrid *grid)
     free(state->source);
     free(state->order);
     free(state->light);
+    free(state->sent);
+    free(state->onto);
+    free(state->onto_groups);
     free(state->hidden);
     free(state->glow);
     free(state->tint);

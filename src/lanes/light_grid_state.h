@@ -6,6 +6,8 @@
 #include "draw/light_field.h"
 #include "lanes/light_grid.h"
 
+#include "glsl/kernel/onto.h"
+
 #include <stdatomic.h>
 
 enum {
@@ -69,12 +71,18 @@ typedef struct LightGridState {
     float *hidden;   // [active + 1][4]: mean light, and 1 if it suffices
     float *glow;     // [filled][3]: share of a cell's light that the mesh reflects, linear RGB
     float *tint;     // [filled][3]: ratio of the albedo to the kind's
+    float *sent;     // [groups][filled][GROUP_WIDE]: sum of S over all orders, if lights_skin
     int *class;      // [filled]: main tangent and kind
     float *planes;   // [groups][3][plane]: two slices, and rows
     size_t plane;    // floats
     GridSpan *spans; // [groups][slices][rows]: cells that a sweep visits, see light_grid_spans.c
     bool closing;    // the light of further orders is extrapolated
     double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
+
+    bool lights_skin;                    // onto: the light that hair sends onto skin
+    float (*onto)[ONTO_FACES][4];        // [cells]: see kernel/onto.h; [0][3]: 1 if there is light
+    float (*onto_groups)[ONTO_FACES][3]; // [groups][cells]: parts of this sum
+    size_t onto_room;
 
     float eye[3]; // m, in the lattice's axes: the eye of GridPatches
     GridPatches *patches;
@@ -146,6 +154,15 @@ void light_grid_scatter(LightGridState *state);
 bool light_grid_needs_more(const LightGridState *state, float all[3]);
 // Sums the light of all orders; with `further` also of the orders after the last one.
 void light_grid_close(LightGridState *state, bool further);
+
+// Makes room for `onto`. False if memory is short.
+bool light_grid_make_onto(LightGridState *state);
+// The weights of a group's directions for the faces of a cell.
+void light_grid_find_faces(int group, float face[ONTO_FACES][GRID_LANES]);
+// Sweeps `source`, which must be the sum over all orders, through all cells, without other light,
+// into onto_groups; light_grid_sum_onto sums these.
+void light_grid_sweep_onto(LightGridState *state);
+void light_grid_sum_onto(LightGridState *state);
 
 // The patch of a cell (slot `active`: outside of all cells), which is computed if it is not there
 // yet. If there is no room it is written to `scratch`.

@@ -23,6 +23,7 @@ typedef struct GroupWay {
     float sky[GROUP_WIDE];
     ptrdiff_t stride[3], step[3]; // of slots and of walls, along `main` and the axes across
     const float *walls[3];        // transmittance of the mesh along these axes; NULL without a mesh
+    float face[ONTO_FACES][GRID_LANES]; // weights of the directions on the faces of a cell
 } GroupWay;
 
 static void find_strides(const LightGridState *state, GroupWay *way)
@@ -57,6 +58,7 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
     memset(way->sky, 0, sizeof way->sky);
     if (sweep->sky)
         memcpy(way->sky, sweep->state->field.around + (size_t)group * GROUP_WIDE, sizeof way->sky);
+    light_grid_find_faces(group, way->face);
     find_strides(sweep->state, way);
 }
 
@@ -141,6 +143,29 @@ SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, 
     }
 }
 
+// A cell where only the light of hair is followed, onto skin.
+SIMD_INLINE void cross_onto(const Sweep *sweep, const GroupWay *way, int group, ptrdiff_t cell,
+                            int slot, float *io)
+{
+    const LightGridState *state = sweep->state;
+    float mean[GROUP_WIDE];
+    if (slot >= 0 && slot < state->filled)
+        pass_cell(sweep, group, slot, io, mean);
+    else
+        memcpy(mean, io, sizeof mean);
+    float(*onto)[3] =
+        state->onto_groups[(size_t)group * light_lattice_cells(&state->field.lattice) +
+                           (size_t)cell];
+    for (int f = 0; f < ONTO_FACES; ++f)
+        for (int c = 0; c < 3; ++c) {
+            const GridLanes part =
+                *(const GridLanes *)(mean + c * GRID_LANES) * *(const GridLanes *)way->face[f];
+            float sum = 0;
+            for (int l = 0; l < GRID_LANES; ++l) sum += part[l];
+            onto[f][c] = sum;
+        }
+}
+
 // Processes a cell on the way of the group: `io` is the incoming light, then the outgoing light.
 SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, GridLanes met[3])
 {
@@ -157,11 +182,12 @@ SIMD_INLINE void cross_cell(const Sweep *sweep, int group, int slot, float *io, 
 
 // Sweeps row y of a slice from three blended rows of the slice before, to `out`.
 SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, bool walls,
-                           int slice, int y, const int cells[2], const float *const rows[3],
-                           float *out, double sum[3])
+                           bool onto, int slice, int y, const int cells[2],
+                           const float *const rows[3], float *out, double sum[3])
 {
     const LightGridState *state = sweep->state;
-    const int *slot = state->slot + slice * way->stride[0] + y * way->stride[2];
+    ptrdiff_t first = slice * way->stride[0] + y * way->stride[2];
+    const int *slot = state->slot + first;
     ptrdiff_t at = slice * way->step[0] + y * way->step[2];
     GridLanes met[3] = {{0}};
     for (int x = cells[0]; x < cells[1]; ++x) {
@@ -173,8 +199,11 @@ SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, b
               out + column);
         float passed = walls ? way->walls[0][here + (way->forward ? 0 : way->step[0])] : 1;
         int own = slot[x * way->stride[1]];
-        if (passed != 1) meet_mesh(state, passed, own, out + column);
-        cross_cell(sweep, group, own, out + column, met);
+        if (passed != 1) meet_mesh(state, passed, onto ? -1 : own, out + column);
+        if (onto)
+            cross_onto(sweep, way, group, first + x * way->stride[1], own, out + column);
+        else
+            cross_cell(sweep, group, own, out + column, met);
     }
     for (int c = 0; c < 3; ++c)
         for (int l = 0; l < GRID_LANES; ++l) sum[c] += (double)met[c][l];
@@ -189,19 +218,20 @@ typedef struct Planes {
 
 // Sweeps a slice. Cells in front of all hair are never written; they keep the environment's light.
 SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group, bool walls,
-                             int slice, const Planes *planes, double sum[3])
+                             bool onto, int slice, const Planes *planes, double sum[3])
 {
     const int *n = sweep->state->field.lattice.count;
     int wide = n[way->across[0]], tall = n[way->across[1]];
     size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
     const GridSpan *spans = grid_spans(sweep->state, group, slice);
+    const int whole[2] = {0, wide};
     ptrdiff_t wall = (way->forward ? slice - 1 : slice + 1) * way->step[0] - way->step[2];
     // Row y of the slice before is stored at y % 3: three rows around a row of cells are needed at
     // a time.
     for (int y = 0; y < tall + 2; ++y) {
         int blended[2] = {wide, 0};
         for (int around = y < 2 ? 0 : y - 2; around <= y && around < tall; ++around)
-            grid_span_join(blended, grid_span_cells(&spans[around], sweep->sky));
+            grid_span_join(blended, onto ? whole : grid_span_cells(&spans[around], sweep->sky));
         blend_row(way, walls, blended, walls ? way->walls[1] + wall + y * way->step[2] : NULL,
                   planes->before + (size_t)y * row, planes->rows + (size_t)(y % 3) * used);
         if (y < 2) continue;
@@ -209,8 +239,8 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
                                       planes->rows + (size_t)((y - 1) % 3) * used,
                                       planes->rows + (size_t)(y % 3) * used};
         float *out = planes->after + (size_t)(y - 1) * row + GROUP_WIDE;
-        sweep_row(sweep, way, group, walls, slice, y - 2,
-                  grid_span_cells(&spans[y - 2], sweep->sky), rows, out, sum);
+        sweep_row(sweep, way, group, walls, onto, slice, y - 2,
+                  onto ? whole : grid_span_cells(&spans[y - 2], sweep->sky), rows, out, sum);
     }
 }
 
@@ -220,7 +250,8 @@ static void fill_plane(float *plane, size_t floats, const float sky[GROUP_WIDE])
         memcpy(plane + i, sky, GROUP_WIDE * sizeof *sky);
 }
 
-SIMD_INLINE void sweep_slices(const Sweep *sweep, const GroupWay *way, int group, bool walls)
+SIMD_INLINE void sweep_slices(const Sweep *sweep, const GroupWay *way, int group, bool walls,
+                              bool onto)
 {
     LightGridState *state = sweep->state;
     const int *n = state->field.lattice.count;
@@ -233,7 +264,7 @@ SIMD_INLINE void sweep_slices(const Sweep *sweep, const GroupWay *way, int group
     size_t used = ((size_t)n[way->across[0]] + 2) * ((size_t)n[way->across[1]] + 2) * GROUP_WIDE;
     for (int k = 0; k < 2; ++k) fill_plane(planes[k], used, way->sky);
     for (int i = 0; i < slices; ++i)
-        sweep_slice(sweep, way, group, walls, way->forward ? i : slices - 1 - i,
+        sweep_slice(sweep, way, group, walls, onto, way->forward ? i : slices - 1 - i,
                     &(Planes){planes[i % 2], planes[(i + 1) % 2], rows}, sum);
 }
 
@@ -243,13 +274,31 @@ SIMD_INLINE void sweep_groups(const Sweep *sweep, int part)
         GroupWay way;
         find_way(sweep, group, &way);
         if (way.walls[0])
-            sweep_slices(sweep, &way, group, true);
+            sweep_slices(sweep, &way, group, true, false);
         else
-            sweep_slices(sweep, &way, group, false);
+            sweep_slices(sweep, &way, group, false, false);
     }
 }
 
 SIMD_STAGE(sweep_groups, Sweep)
+
+SIMD_INLINE void sweep_groups_onto(const Sweep *sweep, int part)
+{
+    for (int group = part; group < ORDINATE_GROUPS; group += sweep->parts) {
+        GroupWay way;
+        find_way(sweep, group, &way);
+        sweep_slices(sweep, &way, group, true, true);
+    }
+}
+
+SIMD_STAGE(sweep_groups_onto, Sweep)
+
+void light_grid_sweep_onto(LightGridState *state)
+{
+    int parts = state->parts < ORDINATE_GROUPS ? state->parts : ORDINATE_GROUPS;
+    Sweep sweep = {.state = state, .parts = parts};
+    run_sweep_groups_onto(&sweep, parts);
+}
 
 void light_grid_sweep(LightGridState *state, bool sky, bool fresh)
 {
@@ -276,6 +325,11 @@ SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows
     for (int g = 0; g < ORDINATE_GROUPS; ++g)
         for (int l = 0; l < GRID_LANES; ++l)
             grid_source(state, g, f)[channel * GRID_LANES + l] = tint * sum[g * GRID_LANES + l];
+    for (int g = 0; g < ORDINATE_GROUPS && state->lights_skin; ++g)
+        for (int l = channel * GRID_LANES; l < (channel + 1) * GRID_LANES; ++l) {
+            const float *source = grid_source(state, g, f);
+            state->sent[source + l - state->source] += source[l];
+        }
 }
 
 // The mesh reflects the light of the last order, times its colour, equally in all directions.

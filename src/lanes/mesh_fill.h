@@ -14,7 +14,7 @@ enum {
     PLACES = 1 + MESH_EDGES,
     NORMAL = 2,
     TINT = NORMAL + 3,
-    VALUES = TINT + 3 // per vertex: depth, 1/w, normal / w, tint / w
+    VALUES = TINT + 4 // per vertex: depth, 1/w, normal / w, tint / w
 };
 
 // The places of the middle sample and of the edge samples in a pixel (1/256 px). The edge samples

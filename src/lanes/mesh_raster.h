@@ -15,7 +15,7 @@
 typedef struct PlacedMesh {
     const float (*position)[3];    // [vertex_count], m, the mesh's frame
     const float (*normal)[3];      // [vertex_count], unit; NULL if only depths are drawn
-    const float *open;             // [vertex_count], share of the sky; NULL: 1
+    const float (*open)[2];        // [vertex_count], shares of the sky (openness.h); NULL: 1
     const float (*tint)[3];        // [vertex_count], factors of the colour; NULL: 1
     const uint32_t (*triangle)[3]; // [triangle_count]
     uint32_t vertex_count, triangle_count;
@@ -25,7 +25,7 @@ typedef struct PlacedMesh {
 // Vertices on the screen, kept only as memory for the next call. A zeroed struct is empty.
 typedef struct MeshRaster {
     int (*place)[2];   // [room], owned: 1/256 px
-    float *value[8];   // [room], owned: depth, 1 over w, normal over w, tint over w
+    float *value[9];   // [room], owned: depth, 1 over w, normal over w, tint over w
     unsigned char *on; // [room], owned: bits of the view box's planes that the vertex is outside of
     size_t room;
 } MeshRaster;
@@ -50,8 +50,8 @@ typedef struct MeshSurface {
     float *depth;             // [height][pitch], owned like all: at pixels' middles, 1: nothing
     float *edge[MESH_EDGES];  // depths at the other samples
     // At middles with mesh, all over w: 1; the normal, whose length is the share of the sky; the
-    // tint.
-    float *inverse, *normal[3], *tint[3];
+    // tint, and after it the share of the sky past the mesh alone.
+    float *inverse, *normal[3], *tint[4];
     float *memory; // of all arrays
     size_t room;
 } MeshSurface;

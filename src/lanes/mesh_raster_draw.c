@@ -66,7 +66,8 @@ Result mesh_surface_resize(MeshSurface *surface, int width, int height, Error *e
     float **const planes[PLANE_COUNT] = {
         &surface->depth,     &surface->edge[0], &surface->edge[1],   &surface->edge[2],
         &surface->edge[3],   &surface->inverse, &surface->normal[0], &surface->normal[1],
-        &surface->normal[2], &surface->tint[0], &surface->tint[1],   &surface->tint[2]};
+        &surface->normal[2], &surface->tint[0], &surface->tint[1],   &surface->tint[2],
+        &surface->tint[3]};
     for (int i = 0; i < PLANE_COUNT && surface->memory; ++i)
         *planes[i] = surface->memory + (size_t)i * plane;
     surface->width = width;
@@ -142,7 +143,7 @@ SIMD_INLINE void place_vertex(const Matrix *matrix, const float x[3], float h[4]
 SIMD_INLINE void turn_normal(const Fill *fill, size_t v, float n[3])
 {
     const float *own = fill->mesh->normal[v];
-    float open = fill->mesh->open ? fill->mesh->open[v] : 1;
+    float open = fill->mesh->open ? fill->mesh->open[v][0] : 1;
     for (int i = 0; i < 3; ++i) {
         const float *row = fill->matrix.turn[i];
         n[i] = open * (row[0] * own[0] + row[1] * own[1] + row[2] * own[2]);
@@ -151,6 +152,7 @@ SIMD_INLINE void turn_normal(const Fill *fill, size_t v, float n[3])
 
 SIMD_INLINE float tint_at(const Fill *fill, size_t v, int channel)
 {
+    if (channel == 3) return fill->mesh->open ? fill->mesh->open[v][1] : 1;
     return fill->mesh->tint ? fill->mesh->tint[v][channel] : 1;
 }
 
@@ -178,7 +180,7 @@ SIMD_INLINE void place_vertices(const Fill *fill, int part)
         turn_normal(fill, v, n);
         to->value[1][v] = inverse;
         for (int i = 0; i < 3; ++i) to->value[NORMAL + i][v] = n[i] * inverse;
-        for (int i = 0; i < 3; ++i) to->value[TINT + i][v] = tint_at(fill, v, i) * inverse;
+        for (int i = 0; i < 4; ++i) to->value[TINT + i][v] = tint_at(fill, v, i) * inverse;
     }
 }
 SIMD_STAGE(place_vertices, Fill)
@@ -189,7 +191,7 @@ enum { MOST_CORNERS = 3 + PLANES };
 
 // A vertex before the perspective division.
 typedef struct Vertex {
-    float h[4], normal[3], tint[3];
+    float h[4], normal[3], tint[4];
 } Vertex;
 
 // The intersection of an edge with a plane. It is always computed from the inside vertex to the
@@ -202,7 +204,7 @@ static Vertex meet(const Vertex *inside, const Vertex *outside, int plane)
     for (int i = 0; i < 4; ++i) vertex.h[i] = inside->h[i] + share * (outside->h[i] - inside->h[i]);
     for (int i = 0; i < 3; ++i)
         vertex.normal[i] = inside->normal[i] + share * (outside->normal[i] - inside->normal[i]);
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 4; ++i)
         vertex.tint[i] = inside->tint[i] + share * (outside->tint[i] - inside->tint[i]);
     return vertex;
 }
@@ -230,7 +232,7 @@ static Corner project(const Vertex *vertex)
     for (int i = 0; i < 2; ++i)
         corner.place[i] = step_of(simd_min(simd_max(vertex->h[i] * inverse, -far), far));
     for (int i = 0; i < 3; ++i) corner.value[NORMAL + i] = vertex->normal[i] * inverse;
-    for (int i = 0; i < 3; ++i) corner.value[TINT + i] = vertex->tint[i] * inverse;
+    for (int i = 0; i < 4; ++i) corner.value[TINT + i] = vertex->tint[i] * inverse;
     return corner;
 }
 
@@ -243,7 +245,7 @@ static int cut_triangle(const Fill *fill, uint32_t t, int planes, Corner *corner
         uint32_t v = fill->mesh->triangle[t][i];
         place_vertex(&fill->matrix, fill->mesh->position[v], polygon[i].h);
         if (fill->to.value[1]) turn_normal(fill, v, polygon[i].normal);
-        for (int k = 0; k < 3; ++k) polygon[i].tint[k] = tint_at(fill, v, k);
+        for (int k = 0; k < 4; ++k) polygon[i].tint[k] = tint_at(fill, v, k);
         for (int k = 0; k < 4; ++k)
             if (!(fabsf(polygon[i].h[k]) <= 1e30f)) return 0; // broken
     }
@@ -332,7 +334,7 @@ Result mesh_raster_surface(MeshRaster *raster, const PlacedMesh *mesh, const flo
                                   surface->edge[2], surface->edge[3]},
                         .value = {NULL, surface->inverse, surface->normal[0], surface->normal[1],
                                   surface->normal[2], surface->tint[0], surface->tint[1],
-                                  surface->tint[2]}}};
+                                  surface->tint[2], surface->tint[3]}}};
     TRY(make_room(raster, mesh->vertex_count, error));
     run_place_vertices(&fill, parts);
     run_fill_surface(&fill, parts);

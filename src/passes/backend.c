@@ -82,7 +82,7 @@ static Result set_mesh(void *state, const DrawnMesh *mesh, Error *error)
     render_mesh_destroy(mine);
     TRY(render_mesh_create(mine, &mesh->mesh, &passes->gpu->limits, error));
     if (mesh->open)
-        TRY(render_mesh_set_openness(mine, mesh->open, mesh->mesh.vertex_count,
+        TRY(render_mesh_set_openness(mine, (const float(*)[2])mesh->open, mesh->mesh.vertex_count,
                                      &passes->gpu->limits, error));
     if (mesh->tint)
         TRY(render_mesh_set_tint(mine, (const float(*)[3])mesh->tint, mesh->mesh.vertex_count,
@@ -197,6 +197,7 @@ static Result shade(void *state, const BackendFrame *frame, Error *error)
     const Drawing *drawing = frame->drawing;
     const BaseScene scene = {.floor = &passes->options->floor,
                              .shadow = &passes->shadow,
+                             .light = hair_scatter_on_skin(&passes->scatter, frame),
                              .draw = &drawing->draw,
                              .mesh_box = drawing->mesh_box,
                              .box = drawing->base_box};

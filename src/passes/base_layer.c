@@ -45,14 +45,16 @@ static bool is_wide(const DrawParams *draw)
     return false;
 }
 
-void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide)
+void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide, bool onto)
 {
-    if (base->light_count == light_count && base->map_count == map_count && base->wide == wide)
+    if (base->light_count == light_count && base->map_count == map_count && base->wide == wide &&
+        base->onto == onto)
         return;
     forget(base);
     base->light_count = light_count;
     base->map_count = map_count;
     base->wide = wide;
+    base->onto = onto;
 }
 
 Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error)
@@ -65,6 +67,7 @@ Result base_layer_build_light(BaseLayer *base, Shadow shadow, Error *error)
                                     {"SHADOW", shadow},
                                     {"SHADOW_BY_MESH", 1},
                                     {"SKIN", base->shading == MESH_SKIN},
+                                    {"ONTO", base->onto},
                                     {NULL, 0}};
     return base->light ? RESULT_OK
                        : shader_build_draw(&base->light, "draw/screen.vert", "draw/mesh.frag",
@@ -129,6 +132,21 @@ static void draw_surfaces(const BaseLayer *base, const BaseScene *scene, const R
     glDisable(GL_DEPTH_TEST);
 }
 
+// The light of hair, and its lattice.
+static void set_onto(const LightPasses *light)
+{
+    const LightLattice *lattice = &light->field.lattice;
+    float axis[3][4];
+    for (int k = 0; k < 3; ++k) {
+        memcpy(axis[k], lattice->turn[k], sizeof lattice->turn[k]);
+        axis[k][3] = lattice->low[k];
+    }
+    glUniform4fv(0, 3, axis[0]);
+    glUniform4f(3, (float)lattice->count[0], (float)lattice->count[1], (float)lattice->count[2],
+                lattice->side);
+    gpu_buffer_bind_texture(&light->faces, BIND_ONTO);
+}
+
 // Lights pixels of the mesh only: the triangle lies at the far plane and the depth test is
 // GL_GREATER, so pixels without mesh are skipped.
 static void light_mesh(const BaseLayer *base, const BaseScene *scene, const RenderTarget *target)
@@ -142,6 +160,7 @@ static void light_mesh(const BaseLayer *base, const BaseScene *scene, const Rend
     glDepthFunc(GL_GREATER);
     glBindFramebuffer(GL_FRAMEBUFFER, target->lit_frame);
     glUseProgram(base->light);
+    if (base->onto) set_onto(scene->light);
     glBindVertexArray(base->vertex_array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthFunc(GL_LESS);
@@ -183,7 +202,7 @@ static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarg
     FloorKind floor = seen ? scene->floor->kind : FLOOR_NONE;
     Shadow shadow = scene->shadow->options.kind;
     base_layer_count(base, scene->draw->light_count, scene->shadow->params.maps,
-                     is_wide(scene->draw));
+                     is_wide(scene->draw), scene->light != NULL);
     if (mesh) TRY(base_layer_build_light(base, shadow, error));
     if (mesh || seen) TRY(base_layer_build(base, mesh, floor, shadow, error));
     gpu_timer_begin(timer, "draw_mesh");

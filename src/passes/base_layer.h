@@ -9,6 +9,7 @@
 #include "base/params.h"
 #include "gpu/gpu_timer.h"
 #include "gpu/shader.h"
+#include "passes/light_passes.h"
 #include "passes/render_mesh.h"
 #include "passes/shadows.h"
 #include "scene/floor.h"
@@ -22,7 +23,7 @@ typedef struct BaseLayer {
     GLuint light;               // program that lights the mesh
     GLuint finish[2][3];        // programs: with a mesh, and by FloorKind
     int light_count, map_count; // numbers for which these programs were compiled
-    bool wide;                  // the same: lights have a radius
+    bool wide, onto;            // the same: lights have a radius, hair sends light onto the mesh
     GLuint vertex_array;        // without attributes
     DrawParams drawn;           // the parameters of the target's surface and base
     uint64_t shadowed;          // Shadows.version of that image
@@ -35,6 +36,7 @@ typedef struct BaseLayer {
 typedef struct BaseScene {
     const Floor *floor;
     const Shadows *shadow;     // shadows on mesh and floor, bound
+    const LightPasses *light;  // light that hair sends onto the mesh; NULL: none
     const DrawParams *draw;    // uploaded
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } BaseScene;
@@ -42,9 +44,9 @@ typedef struct BaseScene {
 // Whether there is mesh or floor.
 bool base_layer_is_needed(const BaseLayer *base, const Floor *floor);
 
-// Sets the number of lights and shadow maps, and whether lights have a radius. Programs for others
-// are dropped.
-void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide);
+// Sets the number of lights and shadow maps, whether lights have a radius, and whether hair sends
+// light onto the mesh. Programs for others are dropped.
+void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide, bool onto);
 
 // Compile the program that lights the mesh, and the one that joins mesh, floor and background, for
 // a floor of this kind and shadows of this kind, unless they are there. `shadow` stays the same for

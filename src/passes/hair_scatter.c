@@ -140,3 +140,9 @@ Result hair_scatter_draw(HairScatter *scatter, const BackendFrame *frame, Shadow
     }
     return RESULT_OK;
 }
+
+const LightPasses *hair_scatter_on_skin(const HairScatter *scatter, const BackendFrame *frame)
+{
+    bool shown = scatter->any && scatter_is_wanted(&scatter->options, frame);
+    return shown && scatter->passes.filled && scatter->passes.lights_skin ? &scatter->passes : NULL;
+}

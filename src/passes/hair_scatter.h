@@ -37,3 +37,7 @@ Result hair_scatter_begin(HairScatter *scatter, const BackendFrame *frame, Shado
 // looks. `shadows` are deep, drawn for the scene and bound. RESULT_FAILED if memory is short.
 Result hair_scatter_draw(HairScatter *scatter, const BackendFrame *frame, ShadowCasters casters,
                          const Shadows *shadows, Error *error);
+
+// The light, if it includes that of hair on the mesh of this frame; NULL otherwise. Call
+// hair_scatter_draw for the frame first.
+const LightPasses *hair_scatter_on_skin(const HairScatter *scatter, const BackendFrame *frame);

@@ -14,8 +14,9 @@ enum {
 // How a pass is built: the values of its file's macros, and what a lane processes.
 typedef struct PassShape {
     const char *file;
-    int items, shadow, wide, beside, walled, group; // group 0: a strand for each lane, -1: a cell
-    bool hair;                                      // has variants for hair
+    int items, shadow, wide, beside, walled, onto,
+        group; // group 0: a strand for each lane, -1: a cell
+    bool hair; // has variants for hair
 } PassShape;
 
 static const PassShape SHAPES[LIGHT_PASSES] = {
@@ -34,6 +35,11 @@ static const PassShape SHAPES[LIGHT_PASSES] = {
     [LIGHT_PASS_SWEEP_WALLED] = {.file = "draw/light_sweep.comp",
                                  .group = SWEEP_GROUP,
                                  .walled = 1},
+    [LIGHT_PASS_SWEEP_ONTO] = {.file = "draw/light_sweep.comp",
+                               .group = SWEEP_GROUP,
+                               .walled = 1,
+                               .onto = 1},
+    [LIGHT_PASS_ONTO] = {.file = "draw/light_onto.comp", .group = -1},
     [LIGHT_PASS_ORDER] = {.file = "draw/light_order.comp", .group = 1},
     [LIGHT_PASS_SCATTER] = {.file = "draw/light_scatter.comp", .group = ORDINATE_GROUP},
     [LIGHT_PASS_CLOSE] = {.file = "draw/light_close.comp", .group = ORDINATE_GROUP},
@@ -62,6 +68,7 @@ Result light_pass_build(LightPrograms *programs, LightPass pass, unsigned varian
                                     {"WIDE", shape->wide},
                                     {"BESIDE", shape->beside},
                                     {"WALLED", shape->walled},
+                                    {"ONTO", shape->onto},
                                     {NULL, 0}};
     GLuint *program = &programs->program[pass][variant];
     return *program ? RESULT_OK : shader_build_compute(program, shape->file, defines, error);

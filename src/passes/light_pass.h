@@ -17,6 +17,8 @@ typedef enum LightPass {
     LIGHT_PASS_FILL,
     LIGHT_PASS_SWEEP,
     LIGHT_PASS_SWEEP_WALLED,
+    LIGHT_PASS_SWEEP_ONTO, // the light that hair sends, for skin
+    LIGHT_PASS_ONTO,
     LIGHT_PASS_ORDER,
     LIGHT_PASS_SCATTER,
     LIGHT_PASS_CLOSE,

@@ -3,6 +3,8 @@
 
 #include "gpu/gpu_uniforms.h"
 
+#include "glsl/kernel/onto.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +31,8 @@ void light_passes_destroy(LightPasses *passes)
         &passes->light,
         &passes->tables,
         &passes->walls,
+        &passes->onto,
+        &passes->faces,
         &passes->kinds[FIELD_FIRST].buffer,
         &passes->kinds[FIELD_SCATTER].buffer,
         &passes->kinds[FIELD_GATHER].buffer,
@@ -148,7 +152,7 @@ static void set_params(const LightPasses *passes, const GridScene *scene)
                           .classes = (uint)(scene->kind_count * TANGENTS),
                           .room = (uint)passes->active,
                           .plane = (uint)count_plane(lattice),
-                          .walled = field->walled,
+                          .walled = passes->lights_skin ? 2 : field->walled,
                           .tinted = field->tinted};
     for (int k = 0; k < 3; ++k) {
         memcpy(params.turn[k], lattice->turn[k], sizeof lattice->turn[k]);
@@ -249,7 +253,7 @@ static Result make_room(LightPasses *passes, Error *error)
     } rooms[] = {
         {&passes->cells, passes->active, sizeof(LightCell), 0},
         {&passes->depth, passes->filled, ORDINATES * 4, 0},
-        {&passes->source, passes->active, GRID_WIDE * 4, 0},
+        {&passes->source, (passes->lights_skin ? 2 : 1) * passes->active, GRID_WIDE * 4, 0},
         {&passes->order, passes->active, GRID_WIDE * 4, 0},
         {&passes->total, passes->active, GRID_WIDE * 4, 0},
         {&passes->light, passes->active, ORDINATES * 16, GL_RGBA32F},
@@ -366,11 +370,33 @@ static Result sweep_orders(LightPasses *passes, const GridScene *scene, Error *e
     return RESULT_OK;
 }
 
+// Finds the light that hair sends onto skin.
+static Result light_skin(LightPasses *passes, Error *error)
+{
+    const int cells = (int)light_lattice_cells(&passes->field.lattice);
+    const GpuLimits *limits = passes->programs.limits;
+    TRY(gpu_buffer_reserve(&passes->onto, limits, "light of hair on skin",
+                           (int64_t)cells * ORDINATES * 8, 0, error));
+    TRY(gpu_buffer_reserve(&passes->faces, limits, "light of hair on skin",
+                           (int64_t)cells * ONTO_FACES * 16, GL_RGBA32F, error));
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_SWEEP_ONTO, 0, error));
+    gpu_buffer_bind_storage(&passes->onto, BIND_LIGHT_ONTO_OUT);
+    gpu_buffer_bind_storage(&passes->planes, BIND_LIGHT_PLANES_OUT);
+    glUniform2i(0, 0, 0);
+    glDispatchCompute(ORDINATES, 1, 1);
+    light_pass_end();
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_ONTO, 0, error));
+    gpu_buffer_bind_storage(&passes->faces, BIND_LIGHT_FACES_OUT);
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_ONTO, cells);
+    return RESULT_OK;
+}
+
 Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCasters casters,
                           Error *error)
 {
     float box[LIGHT_BOX_WORDS];
     passes->filled = passes->active = 0;
+    passes->lights_skin = false;
     if (!passes->box_read.fence) TRY(light_passes_begin(passes, scene, casters, error));
     TRY(take_box(passes, box, error));
     if (!light_field_set_box(&passes->field, scene->cells, box)) return RESULT_OK;
@@ -380,6 +406,7 @@ Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCas
         passes->field.tinted |= casters.list[i].batch->paint.buffer != 0;
     set_params(passes, scene);
     TRY(upload_walls(passes, scene, error));
+    passes->lights_skin = scene->skin && passes->field.walled;
     TRY(count_slots(passes, scene, casters, error));
     if (!passes->filled) return RESULT_OK;
     TRY(make_room(passes, error));
@@ -387,6 +414,7 @@ Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCas
     set_params(passes, scene);
     TRY(fill_cells(passes, scene, casters, error));
     TRY(sweep_orders(passes, scene, error));
+    if (passes->lights_skin) TRY(light_skin(passes, error));
     return gpu_check("light among hair", error);
 }
 

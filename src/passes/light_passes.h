@@ -28,6 +28,9 @@ typedef struct LightPasses {
     LateRead box_read, counts_read;
     GpuBuffer box, slots, cells, state, sums, planes, depth, source, order, total, light;
     GpuBuffer tables, walls;
+    GpuBuffer onto;  // the light of hair by ordinate and cell, for skin
+    GpuBuffer faces; // [cells][ONTO_FACES] vec4: this light on surfaces (kernel/onto.h)
+    bool lights_skin;
     KindTable kinds[FIELD_TABLES];
     int filled, active; // number of cells with hair; plus their neighbours
     int64_t most_sums;  // bytes: the sums of more cells are made in several turns; 0: SUMS_MOST

@@ -79,13 +79,13 @@ static void add_attribute(const RenderMesh *mesh, GLuint place, GLint width,
     glBindVertexArray(0);
 }
 
-Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
+Result render_mesh_set_openness(RenderMesh *mesh, const float (*open)[2], uint32_t vertex_count,
                                 const GpuLimits *limits, Error *error)
 {
     if (!mesh->triangle_count) return RESULT_OK;
     TRY(gpu_buffer_create(&mesh->open, limits, "the sky on the mesh",
                           (int64_t)vertex_count * (int64_t)sizeof *open, open, 0, error));
-    add_attribute(mesh, OPEN, 1, &mesh->open);
+    add_attribute(mesh, OPEN, 2, &mesh->open);
     return RESULT_OK;
 }
 
@@ -116,7 +116,7 @@ static void draw_with(const RenderMesh *mesh, GLuint program)
 {
     glUseProgram(program);
     glBindVertexArray(mesh->vertex_array);
-    if (!mesh->open.buffer) glVertexAttrib1f(OPEN, 1);
+    if (!mesh->open.buffer) glVertexAttrib2f(OPEN, 1, 1);
     if (!mesh->tint.buffer) glVertexAttrib3f(TINT, 1, 1, 1);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_INT, NULL);
 }

@@ -26,7 +26,7 @@ Result render_mesh_create(RenderMesh *mesh, const Mesh *source, const GpuLimits 
 void render_mesh_move(RenderMesh *mesh, const Mesh *moved);
 
 // Uploads each vertex's share of the sky (openness.h). RESULT_FAILED if memory is short.
-Result render_mesh_set_openness(RenderMesh *mesh, const float *open, uint32_t vertex_count,
+Result render_mesh_set_openness(RenderMesh *mesh, const float (*open)[2], uint32_t vertex_count,
                                 const GpuLimits *limits, Error *error);
 
 // Uploads each vertex's factors of the mesh's colour (scalp_tint.h). Errors as above.

@@ -93,7 +93,7 @@ static RendererOptions describe_images(const Images *images, ImageKind kind)
 
 // Computes how much of the sky each vertex of a body sees, for the shading of skin. Other bodies
 // and their hair do not count.
-static Result find_openness(const Images *images, uint32_t b, float *open, Error *error)
+static Result find_openness(const Images *images, uint32_t b, float (*open)[2], Error *error)
 {
     const SceneBody *body = &images->scene->bodies[b];
     uint32_t count = 0;
@@ -120,13 +120,13 @@ static Result open_sky(Images *images, Error *error)
     if (!bodies->mesh.vertex_count || options->mesh_shading != MESH_SKIN ||
         options->aov != AOV_NONE)
         return RESULT_OK;
-    float *open = malloc((size_t)bodies->mesh.vertex_count * sizeof *open);
+    float(*open)[2] = malloc((size_t)bodies->mesh.vertex_count * sizeof *open);
     Result result =
         open ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for the mesh's sky");
     for (uint32_t b = 0; b < images->assets->body_count; ++b)
         if (images->assets->meshes[b].vertex_count)
             THEN(result, find_openness(images, b, open + bodies->bodies[b].first, error));
-    THEN(result, renderer_set_openness(&images->renderer, open, error));
+    THEN(result, renderer_set_openness(&images->renderer, (const float(*)[2])open, error));
     free(open);
     return result;
 }

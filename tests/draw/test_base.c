@@ -35,7 +35,7 @@ static const Ambient AMBIENT = {.sky = {0.8f, 0.9f, 1}, .ground = {0.3f, 0.25f, 
 static const float COLOR[3] = {0.8f, 0.6f, 0.5f};
 
 static Mesh head;
-static float *open_sky; // of the head's vertices
+static float (*open_sky)[2]; // of the head's vertices
 static float (*tint)[3];
 
 enum { STRANDS = 200, VERTICES = 5 };
@@ -97,7 +97,7 @@ static Shown draw_by_opengl(const RendererOptions *options, const float turn[4],
     }
     Renderer *renderer = &studio.renderer;
     NEEDED(renderer_set_mesh(renderer, &head, COLOR, error));
-    NEEDED(renderer_set_openness(renderer, open_sky, error));
+    NEEDED(renderer_set_openness(renderer, (const float(*)[2])open_sky, error));
     NEEDED(renderer_set_tint(renderer, (const float(*)[3])tint, error));
     NEEDED(renderer_draw(renderer, &frame, studio.items, studio.count, &studio.image, error));
     const RenderTarget *target = &((const Passes *)renderer->state)->target;
@@ -124,7 +124,7 @@ static LaneBaseScene make_scene(const float turn[4])
     const Drawing *drawing = &studio.renderer.drawing;
     LaneBaseScene scene = {.mesh = {.position = (const float(*)[3])head.position,
                                     .normal = (const float(*)[3])head.normal,
-                                    .open = open_sky,
+                                    .open = (const float(*)[2])open_sky,
                                     .tint = (const float(*)[3])tint,
                                     .triangle = (const uint32_t(*)[3])head.triangle,
                                     .vertex_count = head.vertex_count,
@@ -344,7 +344,8 @@ int main(void)
     open_sky = malloc(head.vertex_count * sizeof *open_sky);
     tint = malloc(head.vertex_count * sizeof *tint);
     for (uint32_t v = 0; open_sky && tint && v < head.vertex_count; ++v) {
-        open_sky[v] = 0.6f + 0.4f * head.normal[v][1];
+        open_sky[v][0] = 0.6f + 0.4f * head.normal[v][1];
+        open_sky[v][1] = 0.5f * (1 + open_sky[v][0]);
         for (int k = 0; k < 3; ++k) tint[v][k] = 1 + 0.3f * (float)(k - 1) * head.normal[v][0];
     }
     int failed = open_sky && tint ? stage_run_one(tests, RASTER_QUADS) : 1;

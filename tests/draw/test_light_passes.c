@@ -6,6 +6,8 @@
 #include "support/needed.h"
 #include "support/stage.h"
 
+#include "glsl/kernel/onto.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -153,6 +155,7 @@ static void draw(const Case *of, Raster by)
     RendererOptions options = BLACK;
     raster = by;
     options.shadow = (ShadowOptions){.kind = SHADOW_DOM, .side = 128, .spacing = 200};
+    options.mesh_shading = MESH_SKIN;
     options.scatter = (ScatterOptions){
         .kind = of->scatter, .cells = of->cells ? of->cells : 10, .strands = of->strands};
     if (of->thinned) options.lod = (LodOptions){.start = 1, .end = 2, .least = LEAST_SHARE};
@@ -257,6 +260,38 @@ static int count_hidden(void)
     return hidden;
 }
 
+// The light of hair on skin passes through halves, rounded by up to 2^-11, and the cells below the
+// skin are the same.
+static void expect_same_skin(const Case *of, const float (*c)[ONTO_FACES][4])
+{
+    const LightPasses *passes = &stage_passes()->scatter.passes;
+    assert_true((c != NULL) == of->mesh && passes->lights_skin == of->mesh);
+    if (!c) return;
+    const float(*shaders)[ONTO_FACES][4] = gpu_buffer_read(&passes->faces);
+    const size_t cells = light_lattice_cells(&passes->field.lattice);
+    double off = 0, all = 0;
+    assert_non_null(shaders);
+    for (size_t i = 0; i < cells; ++i)
+        for (int f = 0; f < ONTO_FACES; ++f)
+            for (int k = 0; k < 3; ++k) {
+                double a = (double)c[i][f][k], b = (double)shaders[i][f][k];
+                if (f == 0 && k == 0) assert_true(c[i][0][3] == shaders[i][0][3]);
+                off += (a - b) * (a - b), all += a * a;
+            }
+    if (!(all > 1e-4 * (double)cells && sqrt(off / all) < 0x1p-11))
+        fail_msg("%s: skin: off by %g of %g in %zu cells", of->name, sqrt(off / all), all, cells);
+    free((void *)(uintptr_t)shaders);
+}
+
+static const float (*copy_onto(void))[ONTO_FACES][4]
+{
+    const float(*onto)[ONTO_FACES][4] = stage_lanes_onto();
+    size_t size = stage_lanes_cells() * sizeof *onto;
+    float(*copy)[ONTO_FACES][4] = onto ? malloc(size) : NULL;
+    if (copy) memcpy(copy, onto, size);
+    return (const float(*)[ONTO_FACES][4])copy;
+}
+
 static void c_and_shaders_find_the_same_light(void **state)
 {
     (void)state;
@@ -266,6 +301,7 @@ static void c_and_shaders_find_the_same_light(void **state)
         add_sections(&CASES[i]);
         draw(&CASES[i], RASTER_BLOCKS);
         for (uint32_t item = 0; item < 2; ++item) c[item] = find_seen(item);
+        const float(*onto)[ONTO_FACES][4] = copy_onto();
         draw(&CASES[i], RASTER_COMPUTE);
         for (uint32_t item = 0; item < 2; ++item) shaders[item] = copy_seen(item, &count[item]);
         assert_int_equal(count_hidden() > 0, CASES[i].dense);
@@ -274,6 +310,8 @@ static void c_and_shaders_find_the_same_light(void **state)
             free(c[item]);
             free(shaders[item]);
         }
+        expect_same_skin(&CASES[i], onto);
+        free((void *)(uintptr_t)onto);
         studio_clear(&studio);
     }
 }

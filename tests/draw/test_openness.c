@@ -51,11 +51,14 @@ static Mesh make_walls(uint32_t walls)
 // The share at the vertex in this column of the floor's middle row.
 static float open_at(const Mesh *mesh, const OpennessHair *hair, int column)
 {
-    float *open = malloc(mesh->vertex_count * sizeof *open);
+    float(*open)[2] = malloc(mesh->vertex_count * sizeof *open);
     assert_non_null(open);
     NEEDED(openness_find(open, mesh, hair, hair != NULL, error));
-    for (uint32_t v = 0; v < mesh->vertex_count; ++v) assert_true(open[v] >= 0 && open[v] <= 1);
-    float found = open[SIDE / 2 * SIDE + column];
+    for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
+        assert_true(open[v][0] >= 0 && open[v][0] <= open[v][1] && open[v][1] <= 1);
+        if (!hair) assert_true(open[v][0] == open[v][1]);
+    }
+    float found = open[SIDE / 2 * SIDE + column][0];
     free(open);
     return found;
 }

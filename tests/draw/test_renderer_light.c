@@ -278,7 +278,8 @@ static void skin_has_a_soft_edge_and_a_highlight(void **state)
 // The brightness of a grey square of skin that sees the share `open` of the sky.
 static double sky_on_square(const Mesh *mesh, float grey, float open)
 {
-    const float color[3] = {grey, grey, grey}, shares[4] = {open, open, open, open};
+    const float color[3] = {grey, grey, grey},
+                shares[4][2] = {{open, open}, {open, open}, {open, open}, {open, open}};
     RendererOptions options = BLACK;
     options.kind = IMAGE_FLOAT;
     options.mesh_shading = MESH_SKIN;

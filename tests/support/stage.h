@@ -57,6 +57,10 @@ struct Lanes *stage_lanes(void);
 uint64_t stage_base_version(void);
 uint64_t stage_lanes_base_version(void);
 
+// The light of hair on skin (kernel/onto.h) in the cells of the last image; NULL if there is none.
+const float (*stage_lanes_onto(void))[6][4];
+size_t stage_lanes_cells(void);
+
 // The light among hair that 16 points of an item's hair showed in the last picture of blocks.
 void stage_lanes_show(uint32_t item, const float x[3][STRAND_TILE],
                       const float tangent[3][STRAND_TILE], float seen[3][STRAND_TILE]);
