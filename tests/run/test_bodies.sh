@@ -12,7 +12,7 @@ one='"mesh": "ball_%d.obj", "sections": [{"file": "curls.tfx", "algo": "split", 
 two='"mesh": "big.obj", "head": {"translate": [0.3, "0.05*sin(20*t)", 0], "rotate": [0, "200*t", 0]},
      "colliders": [{"sphere": [0, -0.15, 0.1, 0.05]}], "sections": [{"file": "curls.tfx", "algo": "chain", "followers": 1, "color": "#1030a0"}]'
 awk '/^v / { printf "v %.7g %.7g %.7g\n", 1.2 * $2, 1.2 * $3, 1.2 * $4; next } { print }' assets/ball.obj >"$work/big.obj"
-run='"frames": 4, "fps": 24, "sim_rate": 60, "size": "48x32", "look": "plain", "mesh_fps": 24, "sdf_resolution": 16, "sdf_cache": false'
+run='"frames": 4, "fps": 24, "sim_rate": 60, "size": "48x32", "look": "plain", "floor": "plane", "scalp_tint": 0.8, "mesh_fps": 24, "sdf_resolution": 16, "sdf_cache": false'
 echo "{$run, $one}" >"$work/one.json"
 echo "{$run, $two}" >"$work/two.json"
 echo "{$run, \"bodies\": [{$one}, {$two}]}" >"$work/both.json"

@@ -5,14 +5,14 @@
 program=$bin/tractrix-render
 hair=assets/demo.tfx
 
-# The bundled head as nine samples: it turns on its neck, and the chin drops.
+# The bundled head as ten samples: it turns on its neck, and the chin drops.
 sample() {
     awk -v t="$1" '/^v / { s = ($3 + 0.3) / 0.3; if (s < 0) s = 0; if (s > 1) s = 1
             a = 0.5 * t * s * s * (3 - 2 * s); c = cos(a); d = sin(a)
             y = $3; if ($4 > 0.05 && $3 < -0.05) y -= 0.02 * t
             printf "v %.7g %.7g %.7g\n", c * $2 + d * $4, y, c * $4 - d * $2; next } { print }' assets/head.obj
 }
-for i in 0 1 2 3 4 5 6 7 8; do sample "0.$i" >"$work/head_$i.obj"; done
+for i in 0 1 2 3 4 5 6 7 8 9; do sample "0.$i" >"$work/head_$i.obj"; done
 scene="$hair --look plain --followers 1 --algo chain --sdf-resolution 32 --size 48x32 --frames 8 --fps 24 --mesh $work/head_%d.obj"
 
 claim "runs, caches, parts and resumed runs of a body give the same pictures; the body moves"
@@ -31,7 +31,7 @@ done
 if cmp -s "$work/direct/frame_0000.png" "$work/direct/frame_0007.png"; then bad "nothing moves"; else good; fi
 
 claim "a cache or an image of other samples is not this scene's"
-sample 0.75 >"$work/head_8.obj"
+sample 0.75 >"$work/head_9.obj" # beyond the last frame, which the camera frames
 # shellcheck disable=SC2086
 {
 run 3 $scene -q --from-cache "$work/a.cache" -o "$work/x/"; one_line; says "body.checksum"
@@ -43,7 +43,7 @@ claim "what a body cannot be is refused by one line with file and sample"
 rm "$work/head_3.obj"
 # shellcheck disable=SC2086
 {
-run 3 $scene -q -o "$work/x/"; one_line; says "head_3.obj: missing: expected files for samples 0 to 8 without gaps"
+run 3 $scene -q -o "$work/x/"; one_line; says "head_3.obj: missing: expected files for samples 0 to 9 without gaps"
 
 claim "numbers may begin anywhere, and a far one is a gap at once; a mesh that stands still may come through a pipe"
 mkdir "$work/far"

@@ -110,13 +110,13 @@ static void accelerating(double time, const double rest[3], double place[3])
     place[2] = rest[2] - 0.5 * time * time;
 }
 
-// Samples lie between steps and start before time 0, which is between two of them.
+// Samples (`rate` per second) lie between steps and start before time 0, which is between two.
 static void check_between(const char *algo, BodyMotion *motion, const char *const formulas[4],
-                          double allowed)
+                          double rate, double allowed)
 {
     BodyFixture bound;
     SimulationFixture tracked;
-    body_fixture_create(&bound, algo, "", motion, 24, -0.05, 20);
+    body_fixture_create(&bound, algo, "", motion, rate, -1.2 / rate, 20);
     create_tracked(&tracked, algo, "", formulas);
     // The groom is attached to the mesh at time 0.
     HeadPose start = head_at(&bound.base.scene.bodies[0].head, 0);
@@ -139,14 +139,14 @@ static void check_between(const char *algo, BodyMotion *motion, const char *cons
 static void an_even_turn_is_exact_between_samples(void **state)
 {
     (void)state;
-    check_between("chain", turning, (const char *const[]){"0", "0", "0", "2*t"}, 1e-5);
+    check_between("chain", turning, (const char *const[]){"0", "0", "0", "2*t"}, 4, 1e-5);
 }
 
 static void a_constant_acceleration_is_exact_between_samples(void **state)
 {
     (void)state;
     check_between("chain", accelerating, (const char *const[]){"2*t^2", "0.3*t", "-0.5*t^2", "0"},
-                  1e-5);
+                  24, 1e-5);
 }
 
 // A motion whose order matters: turns and moves at changing speeds. The splines' slopes err by
@@ -155,7 +155,7 @@ static void a_constant_acceleration_is_exact_between_samples(void **state)
 static void rigid_motion_between_samples_is_that_of_the_head(void **state)
 {
     (void)state;
-    check_between("none", rigid, RIGID, 3e-5);
+    check_between("none", rigid, RIGID, 24, 3e-5);
 }
 
 static void still(double time, const double rest[3], double place[3])
