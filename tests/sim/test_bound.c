@@ -129,6 +129,13 @@ static void check_between(const char *algo, BodyMotion *motion, const char *cons
         simulation_fixture_go(&tracked, frame);
         double apart = farthest_apart(&bound, &tracked);
         if (!(apart < allowed)) fail_msg("frame %d: %g m apart", frame, apart);
+        // All of the motion is the head's, none is left for the strands' frames.
+        const HeadPose *head = &bound.base.simulation.bodies[0].head,
+                       *exact = &tracked.simulation.bodies[0].head;
+        for (int k = 0; k < 4; ++k)
+            assert_true(fabs((double)(head->rotation[k] - exact->rotation[k])) < 2 * allowed);
+        for (int k = 0; k < 3; ++k)
+            assert_true(fabs((double)(head->translation[k] - exact->translation[k])) < 2 * allowed);
     }
     body_fixture_destroy(&bound);
     simulation_fixture_destroy(&tracked);
