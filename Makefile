@@ -311,7 +311,7 @@ check-sanitize:
 # Tests of data that threads share: parallel_run, the output's workers, the video, pairs of images, progress, leftovers,
 # two devices of the library. Tests that draw hundreds of images are left out; scripts/run-threads runs the same code
 # once.
-THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|library_device|light_grid|output|output_video|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
+THREADED = ^test_(bins|compare|composite|groom_shape|leftovers|library_device|light_grid|output|output_video|parallel|png|progress|renderer_pool|scalp|sequence|shadow_reference|strands_make|video)\.c
 check-threads: export TSAN_OPTIONS = suppressions=$(CURDIR)/tests/tsan.supp exitcode=66
 check-threads: ## find data races of the threaded parts by ThreadSanitizer: some minutes (ONLY=NAME)
 	@scripts/setup build run test python

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "base/parallel.h"
 
-#include <assert.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdbool.h>
+#include <stdint.h>
 #include <unistd.h>
 
-typedef struct Share {
-    void (*work)(void *data, int part);
-    void *data;
-    int part;
-    pthread_t thread;
-    bool running;
-} Share;
-
-static atomic_int threads; // 0 if not counted yet
+static atomic_int useful; // threads; 0 if not counted yet
 
 static int count_processors(void)
 {
@@ -29,16 +20,16 @@ static int count_processors(void)
 
 int parallel_threads(void)
 {
-    int count = atomic_load(&threads);
+    int count = atomic_load(&useful);
     if (count) return count;
     count = count_processors();
-    atomic_store(&threads, count);
+    atomic_store(&useful, count);
     return count;
 }
 
 void parallel_set_threads(int count)
 {
-    atomic_store(&threads, count > PARALLEL_MOST ? PARALLEL_MOST : count < 0 ? 0 : count);
+    atomic_store(&useful, count > PARALLEL_MOST ? PARALLEL_MOST : count < 0 ? 0 : count);
 }
 
 int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data)
@@ -51,26 +42,139 @@ int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data)
     return reason;
 }
 
-static void *run(void *argument)
+// --- The waiting threads. Only short lists are changed while the lock is held, never a part done.
+
+// A call of parallel_run. It lies on the stack of its caller, who removes it from the list and then
+// waits for the threads that have joined.
+typedef struct Job {
+    void (*work)(void *data, int part);
+    void *data;
+    int parts;
+    atomic_int next;     // the next part to be done
+    int wanted, joined;  // threads that may still join; that have joined and not finished
+    pthread_cond_t left; // the last joined thread has finished
+    struct Job *following;
+} Job;
+
+static struct {
+    pthread_mutex_t lock;
+    pthread_cond_t asked; // a job was added, or threads must end
+    Job *jobs;            // that threads may join, the newest first
+    pthread_t threads[PARALLEL_MOST - 1];
+    int count;
+    uintptr_t era; // threads that were started in an earlier one must end
+} pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .asked = PTHREAD_COND_INITIALIZER};
+
+static void do_parts(Job *job, int part)
 {
-    const Share *share = argument;
-    share->work(share->data, share->part);
+    for (; part < job->parts; part = atomic_fetch_add(&job->next, 1)) job->work(job->data, part);
+}
+
+static Job *find_job(void)
+{
+    Job *job = pool.jobs;
+    while (job && !job->wanted) job = job->following;
+    return job;
+}
+
+static void help(Job *job)
+{
+    --job->wanted;
+    ++job->joined;
+    pthread_mutex_unlock(&pool.lock);
+    do_parts(job, atomic_fetch_add(&job->next, 1));
+    pthread_mutex_lock(&pool.lock);
+    if (--job->joined == 0) pthread_cond_signal(&job->left);
+}
+
+static void *serve(void *data)
+{
+    uintptr_t era = (uintptr_t)data;
+    pthread_mutex_lock(&pool.lock);
+    while (era == pool.era) {
+        Job *job = find_job();
+        if (job)
+            help(job);
+        else
+            pthread_cond_wait(&pool.asked, &pool.lock);
+    }
+    pthread_mutex_unlock(&pool.lock);
     return NULL;
+}
+
+// A forked child has no threads, and no job goes on there.
+static void lock(void)
+{
+    pthread_mutex_lock(&pool.lock);
+}
+
+static void unlock(void)
+{
+    pthread_mutex_unlock(&pool.lock);
+}
+
+static void forget_threads(void)
+{
+    pool.jobs = NULL;
+    pool.count = 0;
+    pthread_cond_init(&pool.asked, NULL);
+    unlock();
+}
+
+static void watch_forks(void)
+{
+    pthread_atfork(lock, unlock, forget_threads);
+}
+
+static void add_job(Job *job)
+{
+    static pthread_once_t watched = PTHREAD_ONCE_INIT;
+    const int wanted = job->wanted;
+    pthread_once(&watched, watch_forks);
+    pthread_mutex_lock(&pool.lock);
+    while (pool.count < wanted &&
+           parallel_start(&pool.threads[pool.count], serve, (void *)pool.era) == 0)
+        ++pool.count;
+    job->following = pool.jobs;
+    pool.jobs = job;
+    pthread_mutex_unlock(&pool.lock);
+    for (int i = 0; i < wanted; ++i) pthread_cond_signal(&pool.asked);
+}
+
+static void remove_job(Job *job)
+{
+    pthread_mutex_lock(&pool.lock);
+    Job **at = &pool.jobs;
+    while (*at != job) at = &(*at)->following;
+    *at = job->following;
+    while (job->joined) pthread_cond_wait(&job->left, &pool.lock);
+    pthread_mutex_unlock(&pool.lock);
+    pthread_cond_destroy(&job->left);
 }
 
 void parallel_run(int parts, void (*work)(void *data, int part), void *data)
 {
-    Share shares[PARALLEL_MOST];
-    assert(parts <= PARALLEL_MOST);
-    for (int i = 1; i < parts; ++i) {
-        shares[i] = (Share){.work = work, .data = data, .part = i};
-        shares[i].running = parallel_start(&shares[i].thread, run, &shares[i]) == 0;
-    }
-    work(data, 0);
-    for (int i = 1; i < parts; ++i) {
-        if (shares[i].running)
-            pthread_join(shares[i].thread, NULL);
-        else
-            work(data, i);
-    }
+    int threads = parallel_threads(), most = parts < threads ? parts : threads;
+    Job job = {.work = work,
+               .data = data,
+               .parts = parts,
+               .next = 1,
+               .wanted = most - 1,
+               .left = PTHREAD_COND_INITIALIZER};
+    if (most > 1) add_job(&job);
+    do_parts(&job, 0);
+    if (most > 1) remove_job(&job);
+}
+
+__attribute__((destructor)) void parallel_end(void)
+{
+    pthread_t threads[PARALLEL_MOST - 1];
+    pthread_mutex_lock(&pool.lock);
+    int count = pool.count;
+    for (int i = 0; i < count; ++i) threads[i] = pool.threads[i];
+    pool.count = 0;
+    ++pool.era;
+    pthread_cond_broadcast(&pool.asked);
+    pthread_mutex_unlock(&pool.lock);
+    for (int i = 0; i < count; ++i) pthread_join(threads[i], NULL);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs work on several threads.
+// Runs work on several threads. The threads are started when they are first needed and then wait
+// for more work: starting them anew would cost each loop 25 us and more.
 #pragma once
 
 #include <pthread.h>
@@ -16,6 +17,12 @@ void parallel_set_threads(int count);
 // pthread_create.
 int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data);
 
-// Calls work(data, part) for part = 0 .. parts - 1 (at most PARALLEL_MOST), each on its own thread
-// if there are enough, and returns when all are done.
+// Calls work(data, part) for part = 0 .. parts - 1, and returns when all are done. The calling
+// thread does part 0; other parts are done by up to parallel_threads() - 1 waiting threads, or by
+// the calling thread if these are busy. So parts must not wait for each other. Several threads may
+// call this at the same time, also from a part.
 void parallel_run(int parts, void (*work)(void *data, int part), void *data);
+
+// Ends the waiting threads and returns when they have ended. parallel_run may be called before,
+// during and after this call, and starts threads again. Called at exit, too.
+void parallel_end(void);

@@ -264,41 +264,68 @@ double cpu_split_length(const CpuSplit *split)
 
 // --- Timing.
 
-// Threads that step together: a barrier before and after each step, timed by one of them.
+// Threads that step together: a barrier before and after each step, timed by the first of them.
 typedef struct March {
     CpuSplit *split;
     CpuSplitForm form;
     int threads, steps, warm_up;
     double *samples;
+    pthread_mutex_t gate; // locked until all threads have been started
+    int begun;
     pthread_barrier_t barrier;
 } March;
 
-static void march(void *data, int part)
+static void *march(void *data)
 {
     March *m = data;
-    uint32_t tiles = m->split->tile_count, threads = (uint32_t)m->threads, t = (uint32_t)part;
+    pthread_mutex_lock(&m->gate);
+    uint32_t tiles = m->split->tile_count, threads = (uint32_t)m->threads, t = (uint32_t)m->begun++;
+    pthread_mutex_unlock(&m->gate);
     for (int i = -m->warm_up; i < m->steps; ++i) {
         double begin = clock_ms();
         pthread_barrier_wait(&m->barrier);
         cpu_split_step(m->split, m->form, tiles * t / threads, tiles * (t + 1) / threads);
         pthread_barrier_wait(&m->barrier);
-        if (i >= 0 && part == 0) m->samples[i] = clock_ms() - begin;
+        if (i >= 0 && t == 0) m->samples[i] = clock_ms() - begin;
     }
+    return NULL;
+}
+
+// parallel_run does not promise that parts run at the same time, as a barrier needs.
+static Result run_threads(March *m, Error *error)
+{
+    pthread_t threads[PARALLEL_MOST];
+    int started = 0, reason = 0;
+    pthread_mutex_lock(&m->gate);
+    while (started < m->threads && reason == 0) {
+        reason = parallel_start(&threads[started], march, m);
+        started += reason == 0;
+    }
+    if (reason) m->steps = m->warm_up = 0;
+    pthread_mutex_unlock(&m->gate);
+    for (int i = 0; i < started; ++i) pthread_join(threads[i], NULL);
+    return reason == 0 ? RESULT_OK
+                       : error_set(error, RESULT_FAILED, "cannot start %d threads: %s", m->threads,
+                                   strerror(reason));
 }
 
 Result cpu_split_time_steps(Times *times, CpuSplit *split, CpuSplitForm form, int threads,
                             int steps, int warm_up, Error *error)
 {
-    March m = {
-        .split = split, .form = form, .threads = threads, .steps = steps, .warm_up = warm_up};
+    March m = {.split = split,
+               .form = form,
+               .threads = threads,
+               .steps = steps,
+               .warm_up = warm_up,
+               .gate = PTHREAD_MUTEX_INITIALIZER};
     m.samples = calloc((size_t)steps, sizeof *m.samples);
     if (!m.samples) return error_set(error, RESULT_FAILED, "no memory for samples");
     pthread_barrier_init(&m.barrier, NULL, (unsigned)threads);
-    parallel_run(threads, march, &m);
+    Result result = run_threads(&m, error);
     pthread_barrier_destroy(&m.barrier);
-    *times = table_times(m.samples, steps);
+    if (result == RESULT_OK) *times = table_times(m.samples, steps);
     free(m.samples);
-    return RESULT_OK;
+    return result;
 }
 
 enum { ELEMENTS = 16 << 20, RUNS = 12 }; // 64 MiB for each array

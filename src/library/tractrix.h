@@ -17,8 +17,9 @@
 //   It opens only files that an argument or a parameter names. It does not change which OpenGL or
 //   EGL context is current.
 // fork(): a child process may only destroy the devices, simulations and renderers of its parent.
-//   This frees nothing. All calls that need such a device fail with TRACTRIX_NO_GL. The child may
-//   open a device of its own.
+//   This frees nothing. All calls that need such a device fail with TRACTRIX_NO_GL, and so does
+//   tractrix_device_open if it was called before the fork: drivers do not survive it. Fork first
+//   and open devices then, or call exec() in the child.
 // Structs whose first member is `size`: set `size` to sizeof the struct before each call, also if
 //   the library fills in the struct. Newer versions may append members to these structs.
 //   TractrixError and TractrixPose have no `size` and never change.

@@ -81,16 +81,32 @@ Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, 
 
 // --- Lifetime.
 
+static atomic_int devices; // of this process; threads that wait for work end with the last one
+
 void library_keep_device(TractrixDevice *device)
 {
     atomic_fetch_add(&device->users, 1);
+}
+
+static void uncount_device(void)
+{
+    if (atomic_fetch_sub(&devices, 1) == 1) parallel_end();
+}
+
+static void free_device(TractrixDevice *device)
+{
+    free(device);
+    uncount_device();
 }
 
 void library_drop_device(TractrixDevice *device)
 {
     Error unused;
     if (atomic_fetch_sub(&device->users, 1) > 1) return;
-    if (device->process != getpid()) return; // a fork: thread, context, locks are the parent's
+    if (device->process != getpid()) { // a fork: thread, context, locks are the parent's
+        uncount_device();
+        return;
+    }
     if (library_on_device(device, close_gpu, &device->gpu, &unused) != RESULT_OK)
         gpu_lose(&device->gpu); // the host's context is gone
     if (!device->borrowed) {
@@ -98,7 +114,7 @@ void library_drop_device(TractrixDevice *device)
         pthread_cond_destroy(&device->changed);
         pthread_mutex_destroy(&device->mutex);
     }
-    free(device);
+    free_device(device);
 }
 
 void tractrix_device_destroy(TractrixDevice *device)
@@ -112,6 +128,7 @@ static Result create(TractrixDevice **device, Error *error)
     if (!*device) return error_set(error, RESULT_FAILED, "no memory for a device");
     (*device)->users = 1;
     (*device)->process = getpid();
+    atomic_fetch_add(&devices, 1);
     shader_ignore_environment();
     return RESULT_OK;
 }
@@ -139,6 +156,18 @@ static Result start(TractrixDevice *device, Error *error)
                      strerror(reason));
 }
 
+// EGL's displays and the threads of CPU drivers belong to the process that has opened a device,
+// also after the device has been destroyed. In a forked child they would wait for ever.
+static Result check_process(Error *error)
+{
+    static atomic_int opener; // 0: no process yet
+    int before = 0, own = (int)getpid();
+    if (atomic_compare_exchange_strong(&opener, &before, own) || before == own) return RESULT_OK;
+    return error_set(error, RESULT_NO_GL,
+                     "a device was opened before fork(), and drivers do not survive it: expected "
+                     "the first device after fork(), or exec() in the child");
+}
+
 static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *asked, Error *error)
 {
     TractrixDeviceOptions options = {.size = sizeof options};
@@ -146,6 +175,7 @@ static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *
     if (options.software && options.require_hardware)
         return error_set(error, RESULT_USAGE,
                          "options: software and require_hardware exclude each other");
+    TRY(check_process(error));
     TRY(create(device, error));
     Opening opening = {&(*device)->gpu,
                        {.backend = BACKEND_EGL,
@@ -158,7 +188,7 @@ static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *
         if (result == RESULT_OK) return RESULT_OK;
         tractrix_device_destroy(*device);
     } else {
-        free(*device);
+        free_device(*device);
     }
     *device = NULL;
     return result;
@@ -184,7 +214,7 @@ TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *er
     if (result == RESULT_OK) {
         gpu_leave();
     } else {
-        free(*device);
+        free_device(*device);
         *device = NULL;
     }
     return library_end(result, &why, error);

@@ -152,12 +152,35 @@ static void devices_leave_nothing(void **state)
     measure(use_device, NULL, DEVICES, 100);
 }
 
+// Threads that wait for more work end with the last device, not before. (The driver's own threads
+// stay, so they are started first, by a device that uses no other threads.)
+static void the_last_device_ends_its_threads(void **state)
+{
+    TractrixDevice *first, *last;
+    (void)state;
+    tractrix_set_threads(1);
+    use_device(NULL, 0);
+    int before = count_entries("/proc/self/task");
+    tractrix_set_threads(4);
+    WELL(tractrix_device_open(&first, NULL, &error));
+    WELL(tractrix_device_open(&last, NULL, &error));
+    use_simulation(last, 0);
+    tractrix_device_destroy(first);
+    assert_true(count_entries("/proc/self/task") > before + 1);
+    tractrix_device_destroy(last);
+    // The kernel still lists a thread for a moment after it has been joined.
+    for (int i = 0; i < 500 && count_entries("/proc/self/task") > before; ++i) usleep(10000);
+    assert_int_equal(count_entries("/proc/self/task"), before);
+    tractrix_set_threads(0);
+}
+
 // Blocks that glibc keeps for reuse by a thread (tcache) count as used, so tcache is turned off
 // here.
 int main(int count, char **arguments)
 {
     static const char NO_CACHE[] = "glibc.malloc.tcache_count=0";
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_last_device_ends_its_threads),
         cmocka_unit_test(scenes_leave_nothing),
         cmocka_unit_test(simulations_leave_nothing),
         cmocka_unit_test(devices_leave_nothing),
