@@ -400,14 +400,16 @@ SIMD_INLINE bool look_through(BlockForm form, CompositeScratch *scratch)
 {
     const Batch *b = &scratch->batch;
     float nearest = 0;
-    int any = 0;
+    uint8_t any = 0; // a byte, as the cells are: then 64 of them are looked at together
+    for (int c = 0; c < BLOCK_CELLS; ++c) any |= scratch->open[c];
+    if (form != BLOCK_OVER_MESH) {
+        memcpy(scratch->now, scratch->open, BLOCK_CELLS);
+        return any;
+    }
     for (int i = 0; i < BATCH; ++i)
         nearest = simd_max(simd_max(b->near_at[1][i], b->near_at[2][i]), nearest);
-    for (int c = 0; c < BLOCK_CELLS; ++c) {
-        bool before = form != BLOCK_OVER_MESH || scratch->farthest[c] <= nearest;
-        scratch->now[c] = scratch->open[c] & before;
-        any |= scratch->open[c];
-    }
+    for (int c = 0; c < BLOCK_CELLS; ++c)
+        scratch->now[c] = scratch->open[c] & (scratch->farthest[c] <= nearest);
     return any;
 }
 

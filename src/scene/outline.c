@@ -37,30 +37,42 @@ typedef struct Points {
     size_t count;
 } Points;
 
-// A loop without branches is vectorised, and most points do not extend the outline.
-SIMD_INLINE void add_point(Outline *outline, const float point[3])
+enum { LANES = 16 }; // directions at a time
+typedef float Reaches __attribute__((vector_size(LANES * sizeof(float))));
+typedef int32_t Numbers __attribute__((vector_size(LANES * sizeof(int32_t))));
+
+// The farthest points in LANES directions from number `first` on. Explicit vectors stay in
+// registers, which compilers do not do with the same loop over arrays.
+SIMD_INLINE void add_points_along(Outline *outline, const Points *points, int first)
 {
-    float reach[OUTLINE_DIRECTIONS];
-    int farther = 0;
-    const float *x = outline->direction[0], *y = outline->direction[1], *z = outline->direction[2];
-    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i)
-        reach[i] = x[i] * point[0] + y[i] * point[1] + z[i] * point[2];
-    for (int i = 0; i < OUTLINE_DIRECTIONS; ++i) farther |= reach[i] > outline->reach[i];
-    for (int i = 0; farther && i < OUTLINE_DIRECTIONS; ++i)
-        if (reach[i] > outline->reach[i]) {
-            outline->reach[i] = reach[i];
-            memcpy(outline->point[i], point, sizeof(vec3));
-        }
-    for (int k = 0; k < 3; ++k) {
-        if (point[k] < outline->low[k]) outline->low[k] = point[k];
-        if (point[k] > outline->high[k]) outline->high[k] = point[k];
+    Reaches x, y, z, most;
+    Numbers best = (Numbers){0} - 1;
+    memcpy(&x, &outline->direction[0][first], sizeof x);
+    memcpy(&y, &outline->direction[1][first], sizeof y);
+    memcpy(&z, &outline->direction[2][first], sizeof z);
+    memcpy(&most, &outline->reach[first], sizeof most);
+    for (int32_t i = 0; i < (int32_t)points->count; ++i) {
+        const float *point = points->points[i];
+        Reaches reach = x * point[0] + y * point[1] + z * point[2];
+        Numbers farther = reach > most;
+        most = (Reaches)((farther & (Numbers)reach) | (~farther & (Numbers)most));
+        best = (farther & i) | (~farther & best);
     }
+    memcpy(&outline->reach[first], &most, sizeof most);
+    for (int k = 0; k < LANES; ++k)
+        if (best[k] >= 0) memcpy(outline->point[first + k], points->points[best[k]], sizeof(vec3));
 }
 
 SIMD_INLINE void add_points(const Points *points, int part)
 {
+    Outline *outline = points->outline;
     (void)part;
-    for (size_t i = 0; i < points->count; ++i) add_point(points->outline, points->points[i]);
+    for (int i = 0; i < OUTLINE_DIRECTIONS; i += LANES) add_points_along(outline, points, i);
+    for (size_t i = 0; i < points->count; ++i)
+        for (int k = 0; k < 3; ++k) {
+            outline->low[k] = simd_min(points->points[i][k], outline->low[k]);
+            outline->high[k] = simd_max(points->points[i][k], outline->high[k]);
+        }
 }
 
 SIMD_CALL(add_points, Points)
@@ -122,10 +134,12 @@ static uint32_t strand_stride(const Strands *strands, uint32_t times)
 
 static void add_style(Outline *outline, const Strands *strands)
 {
-    uint32_t stride = strand_stride(strands, 1);
-    for (uint32_t s = 0; s < strands->strand_count; s += stride)
-        outline_add(outline, (const float(*)[3])strands->position + strands->first[s],
-                    strands_size(strands, s));
+    uint32_t stride = strand_stride(strands, 1), each = stride > 1 ? 1 : strands->strand_count;
+    for (uint32_t s = 0; s < strands->strand_count; s += each * stride) {
+        uint32_t first = strands->first[s];
+        outline_add(outline, (const float(*)[3])strands->position + first,
+                    strands->first[s + each] - first);
+    }
 }
 
 // Adds an estimate of the strand at rest: from the root on, its directions are a mix of the

@@ -138,15 +138,15 @@ static Result create_batches(Hair *hair, const Strands *strands, const Order *or
 
 static double shortest_segment(const Strands *strands, uint32_t s)
 {
-    double shortest = INFINITY;
+    double least = INFINITY; // the square
     for (uint32_t v = strands->first[s] + 1; v < strands->first[s + 1]; ++v) {
         const float *a = strands->position[v - 1], *b = strands->position[v];
         double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1],
                z = (double)b[2] - (double)a[2];
-        double length = sqrt(x * x + y * y + z * z);
-        if (length < shortest) shortest = length;
+        double square = x * x + y * y + z * z;
+        if (square < least) least = square;
     }
-    return shortest;
+    return sqrt(least);
 }
 
 static void measure_lengths(Hair *hair, const Strands *strands)

@@ -295,71 +295,69 @@ static const double TIP_RATIO = 0.3; // tip radius over root radius, the default
 // fur.
 static const double THINNEST = 1.0 / 5000, THICKEST = 1.0 / 400, STUBBIEST = 1.0 / 12;
 static const double WIDEST = 1.0 / 300; // for fur, over the root of the silhouette's mean area
+static const float NOTHING_TO_DRAW = 1e-4f;
 
-// Density of fibres in a grid over the silhouette, for the three views along the axes.
+// Fibres in a grid over the silhouette, for the three views along the axes.
 typedef struct Silhouette {
-    // length of fibre in the cell, each piece weighted by its share of the root's radius, divided
-    // by the cell's area (1/m)
+    // length of fibre in the cell, each piece weighted by its share of the root's radius (m)
     double fibres[3][MOST_CELLS * MOST_CELLS];
     int cells;   // along the longest side of the box
     double side; // m, of one cell
     float low[3];
 } Silhouette;
 
+static int cell_of(const Silhouette *silhouette, double middle, int axis)
+{
+    int at = (int)((middle - (double)silhouette->low[axis]) / silhouette->side);
+    return at < 0 ? 0 : at >= silhouette->cells ? silhouette->cells - 1 : at;
+}
+
 static void add_piece(Silhouette *silhouette, const double middle[3], const double fibres[3])
 {
-    int at[3];
-    for (int k = 0; k < 3; ++k) {
-        at[k] = (int)((middle[k] - (double)silhouette->low[k]) / silhouette->side);
-        at[k] = at[k] < 0 ? 0 : at[k] >= silhouette->cells ? silhouette->cells - 1 : at[k];
-    }
-    for (int view = 0; view < 3; ++view) {
-        int a = (view + 1) % 3, b = (view + 2) % 3, n = silhouette->cells;
-        silhouette->fibres[view][at[a] * n + at[b]] += fibres[view];
-    }
+    int n = silhouette->cells, x = cell_of(silhouette, middle[0], 0),
+        y = cell_of(silhouette, middle[1], 1), z = cell_of(silhouette, middle[2], 2);
+    silhouette->fibres[0][y * n + z] += fibres[0];
+    silhouette->fibres[1][z * n + x] += fibres[1];
+    silhouette->fibres[2][x * n + y] += fibres[2];
 }
 
-// What a piece adds to each view.
-static void find_fibres(double fibres[3], const double way[3], double share, double side)
-{
-    for (int view = 0; view < 3; ++view) {
-        int a = (view + 1) % 3, b = (view + 2) % 3;
-        fibres[view] = share * sqrt(way[a] * way[a] + way[b] * way[b]) / (side * side);
-    }
-}
-
-// Adds a strand in pieces of at most half a cell, so that each piece belongs to one cell.
-static void add_strand(Silhouette *silhouette, const Strands *strands, uint32_t s, double weight)
+// Adds a strand in pieces of at most half a cell, so that each piece belongs to one cell. Returns
+// its length.
+static double add_strand(Silhouette *silhouette, const Strands *strands, uint32_t s, double weight)
 {
     uint32_t first = strands->first[s], n = strands_size(strands, s);
+    double total = 0, taper = weight * (1 - TIP_RATIO) / (n - 1.0);
     for (uint32_t j = 0; j + 1 < n; ++j) {
         const float *a = strands->position[first + j], *b = strands->position[first + j + 1];
-        double way[3], middle[3], fibres[3], length = 0;
-        for (int k = 0; k < 3; ++k) way[k] = (double)b[k] - a[k], length += way[k] * way[k];
+        double x = (double)b[0] - a[0], y = (double)b[1] - a[1], z = (double)b[2] - a[2],
+               length = sqrt(x * x + y * y + z * z);
+        total += length;
         // The box contains every segment, so `pieces` is bounded.
-        int pieces = (int)ceil(2 * sqrt(length) / silhouette->side);
-        for (int k = 0; k < 3; ++k) way[k] /= pieces;
-        double share = weight * (1 - (1 - TIP_RATIO) * (j + 0.5) / (n - 1));
-        find_fibres(fibres, way, share, silhouette->side);
+        int pieces = (int)ceil(2 * length / silhouette->side);
+        double part = 1.0 / pieces, share = (weight - taper * (j + 0.5)) * part;
+        double fibres[3] = {share * sqrt(y * y + z * z), share * sqrt(z * z + x * x),
+                            share * sqrt(x * x + y * y)};
         for (int i = 0; i < pieces; ++i) {
-            for (int k = 0; k < 3; ++k) middle[k] = (double)a[k] + (i + 0.5) * way[k];
-            add_piece(silhouette, middle, fibres);
+            double along = (i + 0.5) * part;
+            add_piece(silhouette, (double[3]){a[0] + along * x, a[1] + along * y, a[2] + along * z},
+                      fibres);
         }
     }
+    return total;
 }
 
-// The mean over the cells that contain hair. `area`: the area of these cells (m^2), averaged over
-// the three views.
-static double mean_fibres(const Silhouette *silhouette, double *area)
+// The mean density (1/m) over the cells that contain hair. `area`: the area of these cells (m^2),
+// averaged over the three views.
+static double mean_density(const Silhouette *silhouette, double *area)
 {
-    double sum = 0, count = 0;
+    double sum = 0, count = 0, cell = silhouette->side * silhouette->side;
     for (int view = 0; view < 3; ++view)
         for (int i = 0; i < silhouette->cells * silhouette->cells; ++i) {
             sum += silhouette->fibres[view][i];
             count += silhouette->fibres[view][i] > 0;
         }
-    *area = count / 3 * silhouette->side * silhouette->side;
-    return sum / count;
+    *area = count / 3 * cell;
+    return sum / (count * cell);
 }
 
 float paint_auto_radius(const Strands *strands, uint32_t followers)
@@ -368,10 +366,8 @@ float paint_auto_radius(const Strands *strands, uint32_t followers)
     strands_bounds(strands, low, high);
     double longest = 0, side = 0, area;
     for (int k = 0; k < 3; ++k) side = fmax(side, (double)high[k] - (double)low[k]);
+    if (!(side > 0)) return NOTHING_TO_DRAW;
     uint32_t stride = strands->vertex_count / MOST_SAMPLES + 1;
-    for (uint32_t s = 0; s < strands->strand_count; s += stride)
-        longest = fmax(longest, strands_length(strands, s));
-    if (!(longest > 0) || !(side > 0)) return 1e-4f; // nothing to draw
     // Cells are large enough to hold a few strands, because followers fill the space between
     // strands.
     int cells = (int)(sqrt((double)strands->strand_count / stride) / 2);
@@ -379,8 +375,10 @@ float paint_auto_radius(const Strands *strands, uint32_t followers)
     Silhouette silhouette = {.cells = cells, .side = side / cells};
     memcpy(silhouette.low, low, sizeof low);
     for (uint32_t s = 0; s < strands->strand_count; s += stride)
-        add_strand(&silhouette, strands, s, stride * (1 + (double)followers));
-    double radius = FIBRES / (SEEN * 2 * mean_fibres(&silhouette, &area));
+        longest =
+            fmax(longest, add_strand(&silhouette, strands, s, stride * (1 + (double)followers)));
+    if (!(longest > 0)) return NOTHING_TO_DRAW;
+    double radius = FIBRES / (SEEN * 2 * mean_density(&silhouette, &area));
     double fur = fmin(longest * STUBBIEST, sqrt(area) * WIDEST);
     return (float)fmin(fmax(radius, longest * THINNEST), fmax(longest * THICKEST, fur));
 }

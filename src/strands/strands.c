@@ -45,14 +45,17 @@ double strands_length(const Strands *strands, uint32_t s)
 
 void strands_bounds(const Strands *strands, float low[3], float high[3])
 {
-    for (int axis = 0; axis < 3; axis++) {
-        low[axis] = high[axis] = strands->vertex_count ? strands->position[0][axis] : 0.0f;
-        for (uint32_t v = 1; v < strands->vertex_count; v++) {
+    float least[3] = {0}, most[3] = {0}; // not the caller's arrays, so that they stay in registers
+    for (int axis = 0; axis < 3 && strands->vertex_count; axis++)
+        least[axis] = most[axis] = strands->position[0][axis];
+    for (uint32_t v = 1; v < strands->vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++) {
             float x = strands->position[v][axis];
-            if (x < low[axis]) low[axis] = x;
-            if (x > high[axis]) high[axis] = x;
+            least[axis] = x < least[axis] ? x : least[axis];
+            most[axis] = x > most[axis] ? x : most[axis];
         }
-    }
+    memcpy(low, least, sizeof least);
+    memcpy(high, most, sizeof most);
 }
 
 // --- Features.

@@ -101,6 +101,7 @@ static uint32_t mend_strand(FormatSource *source, uint32_t s, uint32_t end, uint
         note(report, DEFECT_TOO_SHORT, source->place[s]);
         return 0;
     }
+    if (distinct == end - begin && to == begin && !kept_from) return distinct;
     move_vertex(strands, to, begin);
     if (kept_from) kept_from[to] = begin;
     for (uint32_t v = begin + 1; v < end; v++) {

@@ -66,8 +66,8 @@ static double measure_diagonal(const FormatSource *source, bool with_origin)
         for (uint32_t v = 0; v < source->strands.vertex_count; v++) {
             float x = source->strands.position[v][axis];
             if (!isfinite(x)) continue;
-            low = fminf(low, x);
-            high = fmaxf(high, x);
+            if (x < low) low = x;
+            if (x > high) high = x;
         }
         if (high > low) square += ((double)high - low) * ((double)high - low);
     }
