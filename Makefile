@@ -249,7 +249,7 @@ SEED = 1
 torture: all tests ## let every system call of small runs fail in turn, kill 200 runs: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
-growth: all tests ## make 10,000 scenes and simulations and 100 devices with the library, count memory that stays: half an hour
+growth: all tests ## make 10,000 scenes and simulations and 100 devices with the library, count memory that stays: five minutes
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
 
 # --- Static checks and the sanitizers. All of them run, then the failed ones are named. A single one: make

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,17 @@ def numbers(name: str, value: Any, shape: tuple[int | None, ...], dtype: Any = n
     if limits and array.size and (array.min() < limits.min or array.max() > limits.max):
         raise error_of(BAD_INPUT, f"{name}: {array.min()} to {array.max()}: expected {limits.min} to {limits.max}")
     return np.ascontiguousarray(array, dtype)
+
+
+def index(name: str, value: Any) -> int:
+    """A whole number that numbers something, from 0."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = -1
+    if not 0 <= number < 2**32:
+        raise usage(f"{name}: got {value!r}: expected a number from 0")
+    return number
 
 
 def words(shape: tuple[int | None, ...]) -> str:

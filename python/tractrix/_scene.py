@@ -6,7 +6,7 @@ from __future__ import annotations
 import ctypes
 import os
 from ctypes import c_float, c_uint32
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, Mapping, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -18,8 +18,9 @@ from ._values import text_of
 
 # (S, V, 3), a list of (V, 3), (points, sizes), or the path of a hair or scene file.
 StrandsLike = Union[np.ndarray, Sequence[np.ndarray], "tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
-# (vertices, triangles), or a path.
-MeshLike = Union["tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
+MeshArrays = Tuple[np.ndarray, np.ndarray]  # vertices, triangles
+# (vertices, triangles), or a path, or {body: (vertices, triangles)} for a scene of several bodies.
+MeshLike = Union[MeshArrays, Mapping[int, MeshArrays], str, "os.PathLike[str]"]
 
 OF_ARRAYS = ("thickness", "color", "uv")
 
@@ -39,7 +40,7 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
         scene = Handle("tractrix_scene_create", "tractrix_scene_destroy", None if look is None else text_of("look", look).encode())
         _add_strands(scene, strands, given)
     if mesh is not None and not is_path(mesh):
-        _set_mesh(scene, mesh, deforms, given, parameters)
+        _set_meshes(scene, mesh, deforms, given, parameters)
     elif deforms:
         raise usage("deforms: needs mesh=(vertices, triangles)")
     elif mesh is not None:
@@ -71,16 +72,27 @@ def _add_strands(scene: Handle, strands: Any, given: dict[str, Any]) -> None:
                               color=_arrays.pointer(color, c_float), uv=_arrays.pointer(uv, c_float))))
 
 
-def _set_mesh(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], parameters: Mapping[str, Any]) -> None:
-    if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
-        raise usage("mesh: expected (vertices, triangles) or a path")
-    vertices = _arrays.numbers("mesh[0]", mesh[0], (None, 3))
-    triangles = _arrays.numbers("mesh[1]", mesh[1], (None, 3), np.uint32)
+def _set_meshes(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], parameters: Mapping[str, Any]) -> None:
     unit, up = given.pop("mesh_unit", parameters.get("unit")), given.pop("mesh_up", parameters.get("up"))
-    call("tractrix_scene_set_mesh", scene.value,
-         ctypes.byref(Mesh(metres_per_unit=_arrays.metres("mesh_unit", unit), up_z=_arrays.up_z("mesh_up", up),
-                           deforms=deforms, vertex_count=len(vertices), triangle_count=len(triangles),
-                           position=_arrays.pointer(vertices, c_float), triangle=_arrays.pointer(triangles, c_uint32))))
+    if not isinstance(mesh, Mapping):
+        with_arrays = _mesh("mesh", mesh, deforms, unit, up)
+        call("tractrix_scene_set_mesh", scene.value, ctypes.byref(with_arrays))
+        return
+    for body, arrays in mesh.items():
+        with_arrays = _mesh(f"mesh[{body}]", arrays, deforms, unit, up)
+        call("tractrix_scene_set_body_mesh", scene.value, _arrays.index("mesh", body), ctypes.byref(with_arrays))
+
+
+def _mesh(name: str, mesh: Any, deforms: bool, unit: Any, up: Any) -> Mesh:
+    if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
+        raise usage(f"{name}: expected (vertices, triangles) or a path, or such pairs by the number of their body")
+    vertices = _arrays.numbers(f"{name}[0]", mesh[0], (None, 3))
+    triangles = _arrays.numbers(f"{name}[1]", mesh[1], (None, 3), np.uint32)
+    made = Mesh(metres_per_unit=_arrays.metres("mesh_unit", unit), up_z=_arrays.up_z("mesh_up", up), deforms=deforms,
+                vertex_count=len(vertices), triangle_count=len(triangles),
+                position=_arrays.pointer(vertices, c_float), triangle=_arrays.pointer(triangles, c_uint32))
+    made.arrays = vertices, triangles  # they must live as long as the pointers to them
+    return made
 
 
 def _is_array(value: Any) -> bool:

@@ -40,8 +40,9 @@ class Simulation:
     """A simulation of hair. It starts at time 0; each `advance` simulates one frame.
 
     `strands` is the path of a hair file or scene file, or arrays of root-first vertices: (S, V, 3), a list of (V, 3),
-    or (points, sizes). Arrays need `unit`. `mesh` is (vertices, triangles) or a path. With `deforms` you pass the
-    vertices of the mesh to each `advance`. All other keywords are the parameters of tractrix-render (docs/options.md),
+    or (points, sizes). Arrays need `unit`. `mesh` is (vertices, triangles) or a path, or, for a scene of several
+    bodies, a dict of (vertices, triangles) by the number of the body. With `deforms` you pass the vertices of the mesh
+    to each `advance`. All other keywords are the parameters of tractrix-render (docs/options.md),
     with `_` for `-`. If `strands` are arrays, these parameters may be arrays: `thickness` (of each vertex, in any unit;
     a vertex with the mean thickness has the radius `radius`), `color` (of each vertex: linear RGB, or linear RGB and
     opacity) and `uv` (of each root). Raises TractrixError.
@@ -110,6 +111,20 @@ class Simulation:
                 call("tractrix_simulation_advance_mesh", self._pointer, _arrays.pointer(vertices, ctypes.c_float), len(vertices))
             else:
                 call("tractrix_simulation_advance", self._pointer, None if head is None else ctypes.byref(pose_of(head)))
+
+    def place(self, body: int, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
+        """Says where one body of the scene will be at the end of the frame that the next `advance()` simulates. `body`:
+        its index in the scene file's list of bodies. `head` or `mesh` as for `advance`, which is for scenes of one
+        body. Bodies that are not placed move as the scene says, or stay where they are if they were placed before."""
+        if (head is None) == (mesh is None):
+            raise usage("place: expected head or mesh")
+        number = _arrays.index("body", body)
+        with lock:
+            if mesh is not None:
+                vertices = _arrays.numbers("mesh", mesh, (None, 3))
+                call("tractrix_simulation_place_body_mesh", self._pointer, number, _arrays.pointer(vertices, ctypes.c_float), len(vertices))
+            else:
+                call("tractrix_simulation_place_body", self._pointer, number, ctypes.byref(pose_of(head)))
 
     def positions(self, section: int = 0, *, part: Part = "guides", copy: bool = True) -> PositionsLike:
         """The vertices of guides or followers as they are drawn now, read-only: (S, V, 4), x y z 1 in the world, m,

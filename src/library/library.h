@@ -109,7 +109,7 @@ struct TractrixScene {
     uint32_t array_count;
     LibraryStep *steps;
     uint32_t step_count;
-    GivenMesh mesh; // the mesh from arrays; without vertices: there is none
+    GivenMesh meshes[SCENE_MAX_BODIES]; // of each body, from arrays; without vertices: none
 };
 
 // Makes a copy of the scene, which the caller must destroy, also after an error. The copy's hair
@@ -130,6 +130,13 @@ typedef struct LibraryMap {
     Gather gather;        // copies positions to the caller's OpenGL buffers
 } LibraryMap;
 
+// Where the caller wants a body to be at the end of the next frame.
+typedef struct LibraryPlace {
+    bool posed; // `head` counts
+    RigidMotion head;
+    float (*mesh)[3]; // [vertices of the body's mesh], owned; NULL: not given
+} LibraryPlace;
+
 struct TractrixSimulation {
     TractrixDevice *device;
     atomic_int users;
@@ -139,9 +146,10 @@ struct TractrixSimulation {
     Simulation simulation;
     char *messages;
     size_t messages_size;
-    LibraryMap *maps;  // [2 * sections]: guides and followers of each section
-    DrivenHead driven; // the head, if the caller moves it
-    uint64_t aims;     // how often a camera parameter was changed
+    LibraryMap *maps;                    // [2 * sections]: guides and followers of each section
+    DrivenHead driven[SCENE_MAX_BODIES]; // heads that the caller moves
+    LibraryPlace next[SCENE_MAX_BODIES];
+    uint64_t aims; // how often a camera parameter was changed
 };
 
 // Free the simulation's maps: library_end_copies frees the GPU's objects and needs the device's

@@ -173,7 +173,12 @@ TractrixResult tractrix_scene_add_strands(TractrixScene *scene, const char *name
 // beyond 1e6 m.
 TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh *mesh,
                                        TractrixError *error);
+// The same for one body of a scene; `mesh` must not be NULL. `body`: its index in the scene file's
+// list of bodies, from 0; a scene without such a list has one body.
+TractrixResult tractrix_scene_set_body_mesh(TractrixScene *scene, uint32_t body,
+                                            const TractrixMesh *mesh, TractrixError *error);
 uint32_t tractrix_scene_section_count(const TractrixScene *scene);
+uint32_t tractrix_scene_body_count(const TractrixScene *scene);
 
 // Sets a parameter. `text` is the value as written on the command line: ("wind", "2,0,0").
 // `section`: the index of a section, for a parameter with `of_section`; -1 sets such a parameter in
@@ -242,6 +247,18 @@ TractrixResult tractrix_simulation_advance(TractrixSimulation *simulation, const
 TractrixResult tractrix_simulation_advance_mesh(TractrixSimulation *simulation,
                                                 const float *position, uint32_t vertex_count,
                                                 TractrixError *error);
+// These two functions say where one body will be at the end of the frame that the next
+// tractrix_simulation_advance simulates (with `head` NULL): the pose of its head, or the vertices
+// of its mesh that deforms. `body` is its index in the scene file's list of bodies, from 0. If a
+// body is placed twice, the last call counts. Bodies that are not placed move as the scene says, or
+// stay where they are if an earlier call has placed them. Results as those of
+// tractrix_simulation_advance and tractrix_simulation_advance_mesh, which are for scenes of one
+// body.
+TractrixResult tractrix_simulation_place_body(TractrixSimulation *simulation, uint32_t body,
+                                              const TractrixPose *head, TractrixError *error);
+TractrixResult tractrix_simulation_place_body_mesh(TractrixSimulation *simulation, uint32_t body,
+                                                   const float *position, uint32_t vertex_count,
+                                                   TractrixError *error);
 double tractrix_simulation_time(const TractrixSimulation *simulation); // scene time, s
 
 typedef enum TractrixPart { TRACTRIX_GUIDES = 0, TRACTRIX_FOLLOWERS = 1 } TractrixPart;

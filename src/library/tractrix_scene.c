@@ -60,9 +60,11 @@ static Result apply(Scene *scene, const TractrixScene *of, const LibraryStep *st
 static Result settle(Scene *scene, const TractrixScene *from, Error *error)
 {
     static const char ARRAY[] = "(array)";
-    SceneBody *body = &scene->bodies[0];
-    body->given_mesh = from->mesh.mesh.vertex_count ? &from->mesh : NULL;
-    if (body->given_mesh) TRY(params_parse(params_find("mesh"), &body->params, ARRAY, error));
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        SceneBody *body = &scene->bodies[b];
+        body->given_mesh = from->meshes[b].mesh.vertex_count ? &from->meshes[b] : NULL;
+        if (body->given_mesh) TRY(params_parse(params_find("mesh"), &body->params, ARRAY, error));
+    }
     scene_settle_colors(scene);
     TRY(scene_choose_turn(scene, error));
     scene_set_lights(scene);
@@ -94,6 +96,11 @@ static Result take_step(TractrixScene *scene, LibraryStep step, Error *error)
     return result;
 }
 
+static void forget_meshes(TractrixScene *scene)
+{
+    for (uint32_t b = 0; b < SCENE_MAX_BODIES; ++b) mesh_destroy(&scene->meshes[b].mesh);
+}
+
 // --- Lifetime.
 
 void tractrix_scene_destroy(TractrixScene *scene)
@@ -107,7 +114,7 @@ void tractrix_scene_destroy(TractrixScene *scene)
     for (uint32_t i = 0; i < scene->step_count; ++i) free(scene->steps[i].text);
     free(scene->arrays);
     free(scene->steps);
-    mesh_destroy(&scene->mesh.mesh);
+    forget_meshes(scene);
     free(scene->path);
     free(scene->json);
     free(scene->folder);
@@ -252,7 +259,7 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
                          info->name);
     TRY(take_step(scene, (LibraryStep){.info = info, .section = section, .text = strdup(text)},
                   error));
-    if (strcmp(info->name, "mesh") == 0) mesh_destroy(&scene->mesh.mesh);
+    if (strcmp(info->name, "mesh") == 0) forget_meshes(scene);
     return RESULT_OK;
 }
 
@@ -303,6 +310,11 @@ size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
 uint32_t tractrix_scene_section_count(const TractrixScene *scene)
 {
     return scene->scene.section_count;
+}
+
+uint32_t tractrix_scene_body_count(const TractrixScene *scene)
+{
+    return scene->scene.body_count;
 }
 
 // --- Arrays.
@@ -431,16 +443,13 @@ static Result copy_mesh(Mesh *to, const TractrixMesh *from, Error *error)
     return check_points((const float(*)[3])to->position, to->vertex_count, error);
 }
 
-static Result set_mesh(TractrixScene *scene, const TractrixMesh *asked, Error *error)
+static Result set_mesh(TractrixScene *scene, uint32_t body, const TractrixMesh *asked, Error *error)
 {
     TractrixMesh from;
     Mesh mesh = {0};
-    if (scene->scene.body_count > 1)
-        return error_set(error, RESULT_USAGE,
-                         "mesh: the scene has %u bodies, each with a mesh of its own: expected a "
-                         "scene of one body",
-                         scene->scene.body_count);
-    if (!asked) return set(scene, -1, "mesh", "", error);
+    if (body >= scene->scene.body_count)
+        return error_set(error, RESULT_USAGE, "body: got %u, expected 0 to %u", body,
+                         scene->scene.body_count - 1);
     TRY(library_take(&from, sizeof from, asked, sizeof from, "mesh", error));
     TRY(check_mesh(&from, error));
     Result result = copy_mesh(&mesh, &from, error);
@@ -448,9 +457,19 @@ static Result set_mesh(TractrixScene *scene, const TractrixMesh *asked, Error *e
         mesh_destroy(&mesh);
         return result;
     }
-    mesh_destroy(&scene->mesh.mesh);
-    scene->mesh = (GivenMesh){mesh, from.deforms};
+    mesh_destroy(&scene->meshes[body].mesh);
+    scene->meshes[body] = (GivenMesh){mesh, from.deforms};
     return RESULT_OK;
+}
+
+static Result set_only_mesh(TractrixScene *scene, const TractrixMesh *mesh, Error *error)
+{
+    if (scene->scene.body_count > 1)
+        return error_set(error, RESULT_USAGE,
+                         "mesh: the scene has %u bodies, each with a mesh of its own: expected a "
+                         "scene of one body, or tractrix_scene_set_body_mesh",
+                         scene->scene.body_count);
+    return mesh ? set_mesh(scene, 0, mesh, error) : set(scene, -1, "mesh", "", error);
 }
 
 TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh *mesh,
@@ -458,5 +477,13 @@ TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh 
 {
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
-    return library_end(set_mesh(scene, mesh, &why), &why, error);
+    return library_end(set_only_mesh(scene, mesh, &why), &why, error);
+}
+
+TractrixResult tractrix_scene_set_body_mesh(TractrixScene *scene, uint32_t body,
+                                            const TractrixMesh *mesh, TractrixError *error)
+{
+    Error why = {{0}};
+    if (!scene) return library_refuse(error, "scene: got NULL");
+    return library_end(set_mesh(scene, body, mesh, &why), &why, error);
 }

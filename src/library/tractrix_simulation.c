@@ -28,12 +28,21 @@ static Result close_simulation(void *data, Error *error)
     return RESULT_OK;
 }
 
+static void forget_places(TractrixSimulation *simulation)
+{
+    for (uint32_t b = 0; b < SCENE_MAX_BODIES; ++b) {
+        free(simulation->next[b].mesh);
+        simulation->next[b] = (LibraryPlace){0};
+    }
+}
+
 void library_drop_simulation(TractrixSimulation *simulation)
 {
     Error unused;
     TractrixDevice *device = simulation->device;
     if (atomic_fetch_sub(&simulation->users, 1) > 1) return;
     if (library_on_device(device, close_simulation, simulation, &unused) == RESULT_OK) {
+        forget_places(simulation);
         library_unmap(simulation);
         assets_destroy(&simulation->assets);
         scene_destroy(&simulation->scene);
@@ -83,7 +92,7 @@ static Result load(TractrixSimulation *simulation, const TractrixScene *from, FI
     scene->run.sdf_cache = false; // write no files to the home folder
     TRY(check(scene, error));
     TRY(assets_load(&simulation->assets, scene, messages, false, error));
-    scene->bodies[0].given_mesh = NULL;
+    for (uint32_t b = 0; b < scene->body_count; ++b) scene->bodies[b].given_mesh = NULL;
     for (uint32_t i = 0; i < scene->section_count; ++i) scene->sections[i].given = NULL;
     TRY(scalp_guess(scene, &simulation->assets, messages, false, error));
     warn(scene, &simulation->assets, messages);
@@ -169,32 +178,54 @@ TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const cha
     return library_end(set(simulation, name, text, &why), &why, error);
 }
 
-// A frame for which the host gives the pose of the head or the mesh. If both are NULL, they move as
-// the scene says, or stay.
-typedef struct Frame {
-    TractrixSimulation *simulation;
-    const TractrixPose *head;
-    float (*mesh)[3]; // in the world; modified
-} Frame;
+// Moves a body to where the caller wants it at the time `after`. If the caller says nothing, it
+// moves as the scene says, or stays.
+static Result place(TractrixSimulation *simulation, uint32_t b, double before, double after,
+                    Error *error)
+{
+    LibraryPlace *next = &simulation->next[b];
+    MovingBody *moved = &simulation->simulation.bodies[b];
+    if (next->posed) {
+        TRY(moving_body_expect_motion(moved, &simulation->device->gpu, error));
+        driven_head_move(&simulation->driven[b], &simulation->scene.bodies[b], &next->head, before,
+                         after);
+    }
+    if (next->mesh) body_drive(&simulation->assets.bodies[b], next->mesh, before, after);
+    return RESULT_OK;
+}
 
 static Result advance(void *data, Error *error)
 {
-    Frame *frame = data;
-    TractrixSimulation *simulation = frame->simulation;
+    TractrixSimulation *simulation = data;
     Simulation *moved = &simulation->simulation;
     double before = moved->time,
            after = schedule_frame_time(&simulation->scene.run, moved->frame + 1.0);
-    if (frame->head) {
-        RigidMotion to;
-        memcpy(to.rotation, frame->head->rotation, sizeof to.rotation);
-        memcpy(to.translation, frame->head->translation, sizeof to.translation);
-        TRY(moving_body_expect_motion(moved->bodies, &simulation->device->gpu, error));
-        driven_head_move(&simulation->driven, simulation->scene.bodies, &to, before, after);
-    }
-    if (frame->mesh) body_drive(simulation->assets.bodies, frame->mesh, before, after);
+    Result result = RESULT_OK;
+    for (uint32_t b = 0; b < simulation->scene.body_count; ++b)
+        THEN(result, place(simulation, b, before, after, error));
+    forget_places(simulation);
+    TRY(result);
     simulation_advance(moved);
     simulation_pose(moved);
     return gpu_check("simulating", error);
+}
+
+static Result check_body(const TractrixSimulation *simulation, uint32_t body, Error *error)
+{
+    if (body < simulation->scene.body_count) return RESULT_OK;
+    return error_set(error, RESULT_USAGE, "body: got %u, expected 0 to %u", body,
+                     simulation->scene.body_count - 1);
+}
+
+// Calls without a body are for scenes that have one.
+static Result check_only(const TractrixSimulation *simulation, const char *what,
+                         const char *instead, Error *error)
+{
+    if (simulation->scene.body_count == 1) return RESULT_OK;
+    return error_set(error, RESULT_USAGE,
+                     "%s: the scene has %u bodies: expected %s for each of "
+                     "them",
+                     what, simulation->scene.body_count, instead);
 }
 
 // Checks that a frame ends with a step and that time goes on: positions between steps would need
@@ -209,26 +240,16 @@ static Result check_drive(const TractrixSimulation *simulation, Error *error)
                      steps);
 }
 
-static bool is_driven(const TractrixSimulation *simulation)
-{
-    return simulation->assets.bodies[0].anchors.points;
-}
-
-static Result check_pose(const TractrixSimulation *simulation, const TractrixPose *head,
-                         Error *error)
+static Result check_pose(const TractrixSimulation *simulation, uint32_t body,
+                         const TractrixPose *head, Error *error)
 {
     const double *q = head->rotation, *t = head->translation;
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    TRY(check_body(simulation, body, error));
     TRY(check_drive(simulation, error));
-    if (simulation->scene.body_count > 1)
-        return error_set(
-            error, RESULT_USAGE,
-            "head: the scene has %u bodies, whose motion the scene gives: expected NULL",
-            simulation->scene.body_count);
-    if (simulation->scene.bodies[0].shape)
+    if (simulation->scene.bodies[body].shape)
         return error_set(error, RESULT_USAGE,
-                         "head: the mesh deforms: expected NULL, or tractrix_simulation_"
-                         "advance_mesh");
+                         "head: the mesh deforms: expected its vertices, or no pose");
     if (!(fabs(length - 1) < 1e-3))
         return error_set(error, RESULT_USAGE, "head.rotation: has length %g, expected 1", length);
     for (int k = 0; k < 3; ++k)
@@ -238,29 +259,51 @@ static Result check_pose(const TractrixSimulation *simulation, const TractrixPos
     return RESULT_OK;
 }
 
+static Result place_head(TractrixSimulation *simulation, uint32_t body, const TractrixPose *head,
+                         Error *error)
+{
+    LibraryPlace *next = &simulation->next[body];
+    TRY(check_pose(simulation, body, head, error));
+    next->posed = true;
+    memcpy(next->head.rotation, head->rotation, sizeof next->head.rotation);
+    memcpy(next->head.translation, head->translation, sizeof next->head.translation);
+    return RESULT_OK;
+}
+
+TractrixResult tractrix_simulation_place_body(TractrixSimulation *simulation, uint32_t body,
+                                              const TractrixPose *head, TractrixError *error)
+{
+    Error why = {{0}};
+    if (!simulation || !head) return library_refuse(error, "simulation or head: got NULL");
+    return library_end(place_head(simulation, body, head, &why), &why, error);
+}
+
 TractrixResult tractrix_simulation_advance(TractrixSimulation *simulation, const TractrixPose *head,
                                            TractrixError *error)
 {
     Error why = {{0}};
+    Result result = RESULT_OK;
     if (!simulation) return library_refuse(error, "simulation: got NULL");
-    Result result = head ? check_pose(simulation, head, &why) : RESULT_OK;
-    Frame frame = {.simulation = simulation, .head = head};
-    THEN(result, library_on_device(simulation->device, advance, &frame, &why));
+    if (head) {
+        result = check_only(simulation, "head", "NULL, and tractrix_simulation_place_body", &why);
+        THEN(result, place_head(simulation, 0, head, &why));
+    }
+    THEN(result, library_on_device(simulation->device, advance, simulation, &why));
     return library_end(result, &why, error);
 }
 
-static Result check_mesh(const TractrixSimulation *simulation, const float *position,
+static Result check_mesh(const TractrixSimulation *simulation, uint32_t body, const float *position,
                          uint32_t vertex_count, Error *error)
 {
-    const Mesh *mesh = simulation->assets.meshes;
+    TRY(check_body(simulation, body, error));
     TRY(check_drive(simulation, error));
-    if (!is_driven(simulation))
+    if (!simulation->assets.bodies[body].anchors.points)
         return error_set(error, RESULT_USAGE,
                          "position: expected a mesh from an array that deforms "
                          "(TractrixMesh.deforms)");
-    if (vertex_count != mesh->vertex_count)
+    if (vertex_count != simulation->assets.meshes[body].vertex_count)
         return error_set(error, RESULT_USAGE, "vertex_count: got %u, expected the mesh's %u",
-                         vertex_count, mesh->vertex_count);
+                         vertex_count, simulation->assets.meshes[body].vertex_count);
     for (size_t i = 0; i < 3 * (size_t)vertex_count; ++i)
         if (!(fabsf(position[i]) <= (float)RIGID_TRACK_MAX))
             return error_set(error, RESULT_BAD_INPUT,
@@ -268,23 +311,35 @@ static Result check_mesh(const TractrixSimulation *simulation, const float *posi
     return RESULT_OK;
 }
 
+static Result place_mesh(TractrixSimulation *simulation, uint32_t body, const float *position,
+                         uint32_t vertex_count, Error *error)
+{
+    TRY(check_mesh(simulation, body, position, vertex_count, error));
+    LibraryPlace *next = &simulation->next[body];
+    size_t size = vertex_count * sizeof *next->mesh;
+    if (!next->mesh) next->mesh = malloc(size);
+    if (!next->mesh) return error_set(error, RESULT_FAILED, "no memory for a mesh's vertices");
+    memcpy(next->mesh, position, size);
+    return RESULT_OK;
+}
+
+TractrixResult tractrix_simulation_place_body_mesh(TractrixSimulation *simulation, uint32_t body,
+                                                   const float *position, uint32_t vertex_count,
+                                                   TractrixError *error)
+{
+    Error why = {{0}};
+    if (!simulation || !position) return library_refuse(error, "simulation or position: got NULL");
+    return library_end(place_mesh(simulation, body, position, vertex_count, &why), &why, error);
+}
+
 TractrixResult tractrix_simulation_advance_mesh(TractrixSimulation *simulation,
                                                 const float *position, uint32_t vertex_count,
                                                 TractrixError *error)
 {
     Error why = {{0}};
-    Frame frame = {.simulation = simulation};
     if (!simulation || !position) return library_refuse(error, "simulation or position: got NULL");
-    Result result = check_mesh(simulation, position, vertex_count, &why);
-    if (result == RESULT_OK) {
-        size_t size = vertex_count * sizeof *frame.mesh;
-        frame.mesh = malloc(size);
-        if (frame.mesh)
-            memcpy(frame.mesh, position, size);
-        else
-            result = error_set(&why, RESULT_FAILED, "no memory for a mesh's vertices");
-    }
-    THEN(result, library_on_device(simulation->device, advance, &frame, &why));
-    free(frame.mesh);
+    Result result = check_only(simulation, "position", "tractrix_simulation_place_body_mesh", &why);
+    THEN(result, place_mesh(simulation, 0, position, vertex_count, &why));
+    THEN(result, library_on_device(simulation->device, advance, simulation, &why));
     return library_end(result, &why, error);
 }

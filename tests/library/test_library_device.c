@@ -379,32 +379,161 @@ static void refuses_what_has_no_effect(void **state)
     tractrix_scene_destroy(empty);
 }
 
-static void a_scene_of_several_bodies_moves_as_it_says(void **state)
+// --- Several bodies: two, both with the same hair.
+
+#define TWO_BODIES(motion)                                                                         \
+    "{\"look\": \"plain\", \"eye\": [0, 0, 2], \"target\": [0, 0, 0], \"bodies\": ["               \
+    "{\"head\": {\"translate\": [-0.3, 0, 0]}, \"sections\": [{\"file\": \"curls.tfx\"}]}, "       \
+    "{\"mesh\": \"ball.obj\", " motion "\"sections\": [{\"file\": \"curls.tfx\"}]}]}"
+
+static TractrixScene *two_bodies(const char *json)
 {
-    static const char JSON[] =
-        "{\"look\": \"plain\", \"bodies\": [{\"sections\": [{\"file\": \"curls.tfx\"}]}, "
-        "{\"mesh\": \"ball.obj\", \"head\": {\"translate\": [\"t\", 0, 0]}, "
-        "\"sections\": [{\"file\": \"curls.tfx\"}]}]}";
-    const TractrixPose pose = {.rotation = {0, 0, 0, 1}};
-    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-    const uint32_t triangle[3] = {0, 1, 2};
-    const TractrixMesh mesh = {.size = sizeof mesh,
-                               .vertex_count = 3,
-                               .triangle_count = 1,
-                               .position = corners,
-                               .triangle = triangle,
-                               .metres_per_unit = 1};
     TractrixScene *scene;
+    WELL(tractrix_scene_parse(&scene, json, "assets", &error));
+    assert_int_equal(tractrix_scene_body_count(scene), 2);
+    return scene;
+}
+
+static TractrixSimulation *simulate_once(TractrixScene *scene)
+{
     TractrixSimulation *simulation;
-    (void)state;
-    WELL(tractrix_scene_parse(&scene, JSON, "assets", &error));
-    library_refused(tractrix_scene_set_mesh(scene, &mesh, &error), TRACTRIX_USAGE, "2 bodies");
     WELL(tractrix_simulation_create(&simulation, device, scene, &error));
-    WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    tractrix_scene_destroy(scene);
+    return simulation;
+}
+
+static void assert_same_guides(TractrixSimulation *one, TractrixSimulation *other, int section,
+                               float within)
+{
+    TractrixPositions a = {.size = sizeof a}, b = {.size = sizeof b};
+    WELL(tractrix_simulation_map(one, section, TRACTRIX_GUIDES, &a, &error));
+    WELL(tractrix_simulation_map(other, section, TRACTRIX_GUIDES, &b, &error));
+    assert_true(a.vertex_count > 0 && a.vertex_count == b.vertex_count);
+    for (uint32_t v = 0; v < a.vertex_count; ++v)
+        assert_near(&a.position[4 * v], &b.position[4 * v], within);
+}
+
+// A body that the host places moves its hair and its drawn mesh as the scene's formula does, and
+// leaves the other body alone. Bounds as in moves_as_the_scene_would; at most 1 % of the pixels
+// (at silhouettes) may show those differences.
+static void the_host_moves_one_of_two_bodies(void **state)
+{
+    static uint8_t pixels[2][FIXTURE_PIXELS][4];
+    TractrixScene *scene =
+        two_bodies(TWO_BODIES("\"head\": {\"translate\": [\"3*t\", \"t\", 0]}, "));
+    TractrixSimulation *says = simulate_once(scene),
+                       *placed = simulate_once(two_bodies(TWO_BODIES("")));
+    int differing = 0;
+    (void)state;
+    for (int frame = 1; frame <= 6; ++frame) {
+        const TractrixPose wrong = {{1, 0, 0, 0}, {9, 9, 9}},
+                           pose = {{0, 0, 0, 1}, {frame / 20.0, frame / 60.0, 0}};
+        WELL(tractrix_simulation_place_body(placed, 1, &wrong, &error)); // the last one counts
+        WELL(tractrix_simulation_place_body(placed, 1, &pose, &error));
+        WELL(tractrix_simulation_advance(placed, NULL, &error));
+        WELL(tractrix_simulation_advance(says, NULL, &error));
+    }
+    for (int section = 0; section < 2; ++section) assert_same_guides(says, placed, section, 1e-5f);
+    library_draw(says, NULL, pixels[0]);
+    library_draw(placed, NULL, pixels[1]);
+    for (int i = 0; i < FIXTURE_PIXELS; ++i)
+        for (int c = 0; c < 3; ++c)
+            if (abs(pixels[0][i][c] - pixels[1][i][c]) > 8) {
+                ++differing;
+                break;
+            }
+    assert_true(differing <= FIXTURE_PIXELS / 100);
+    tractrix_simulation_destroy(says);
+    tractrix_simulation_destroy(placed);
+}
+
+// A mesh with a small triangle around each root of the guides of section 0.
+static void set_scales(TractrixScene *scene, uint32_t body, TractrixSimulation *of, bool deforms,
+                       float (**vertices)[3], uint32_t *count)
+{
+    static const float AROUND[3][2] = {{-0.01f, -0.01f}, {0.01f, -0.01f}, {0, 0.01f}};
+    TractrixPositions guides = map(of, TRACTRIX_GUIDES);
+    *count = 3 * guides.strand_count;
+    float(*position)[3] = *vertices = malloc(*count * sizeof *position);
+    uint32_t *triangle = malloc(*count * sizeof *triangle);
+    for (uint32_t s = 0, v = 0, at = 0; s < guides.strand_count; at += guides.sizes[s++])
+        for (int k = 0; k < 3; ++k, ++v) {
+            const float *root = &guides.position[4 * at];
+            triangle[v] = v;
+            position[v][0] = root[0] + AROUND[k][0];
+            position[v][1] = root[1];
+            position[v][2] = root[2] + AROUND[k][1];
+        }
+    WELL(tractrix_scene_set_body_mesh(scene, body,
+                                      &(TractrixMesh){.size = sizeof(TractrixMesh),
+                                                      .metres_per_unit = 1,
+                                                      .deforms = deforms,
+                                                      .vertex_count = *count,
+                                                      .triangle_count = *count / 3,
+                                                      .position = position[0],
+                                                      .triangle = triangle},
+                                      &error));
+    free(triangle);
+}
+
+// A mesh from an array that the host shifts carries its body's hair as a pose would. Without
+// colliders, because distances to a mesh that deforms are found in another way.
+static void the_host_deforms_one_of_two_meshes(void **state)
+{
+    TractrixScene *soft = two_bodies(TWO_BODIES("")), *hard = two_bodies(TWO_BODIES("")), *one;
+    float(*vertices)[3], (*unused)[3];
+    uint32_t count;
+    (void)state;
+    WELL(tractrix_scene_read(&one, "assets/curls.tfx", &error));
+    TractrixSimulation *still = simulate_once(one);
+    set_scales(soft, 1, still, true, &vertices, &count);
+    set_scales(hard, 1, still, false, &unused, &count);
+    WELL(tractrix_scene_set(soft, -1, "collide", "false", &error));
+    WELL(tractrix_scene_set(hard, -1, "collide", "false", &error));
+    TractrixSimulation *mesh = simulate_once(soft), *head = simulate_once(hard);
+    for (int frame = 1; frame <= 3; ++frame) {
+        const TractrixPose pose = {{0, 0, 0, 1}, {0.02 * frame, 0, 0}};
+        for (uint32_t v = 0; v < count; ++v) vertices[v][0] += 0.02f;
+        WELL(tractrix_simulation_place_body_mesh(mesh, 1, vertices[0], count, &error));
+        WELL(tractrix_simulation_place_body(head, 1, &pose, &error));
+        WELL(tractrix_simulation_advance(mesh, NULL, &error));
+        WELL(tractrix_simulation_advance(head, NULL, &error));
+    }
+    for (int section = 0; section < 2; ++section) assert_same_guides(mesh, head, section, 1e-4f);
+    library_refused(tractrix_simulation_place_body_mesh(mesh, 1, vertices[0], count - 1, &error),
+                    TRACTRIX_USAGE, "vertex_count");
+    library_refused(tractrix_simulation_place_body_mesh(mesh, 0, vertices[0], count, &error),
+                    TRACTRIX_USAGE, "deforms");
+    library_refused(tractrix_simulation_advance_mesh(mesh, vertices[0], count, &error),
+                    TRACTRIX_USAGE, "tractrix_simulation_place_body_mesh");
+    // placed, but never simulated: freed with the simulation
+    WELL(tractrix_simulation_place_body_mesh(mesh, 1, vertices[0], count, &error));
+    tractrix_simulation_destroy(still);
+    tractrix_simulation_destroy(mesh);
+    tractrix_simulation_destroy(head);
+    free(vertices);
+    free(unused);
+}
+
+static void refuses_bodies_that_are_not_there(void **state)
+{
+    const TractrixPose pose = {.rotation = {0, 0, 0, 1}};
+    const TractrixMesh mesh = {.size = sizeof mesh};
+    TractrixScene *scene = two_bodies(TWO_BODIES(""));
+    (void)state;
+    library_refused(tractrix_scene_set_mesh(scene, &mesh, &error), TRACTRIX_USAGE, "2 bodies");
+    library_refused(tractrix_scene_set_body_mesh(scene, 2, &mesh, &error), TRACTRIX_USAGE,
+                    "body: got 2, expected 0 to 1");
+    library_refused(tractrix_scene_set_body_mesh(scene, 0, NULL, &error), TRACTRIX_USAGE,
+                    "mesh: got NULL");
+    TractrixSimulation *simulation = simulate_once(scene);
     library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
                     "2 bodies");
+    library_refused(tractrix_simulation_place_body(simulation, 2, &pose, &error), TRACTRIX_USAGE,
+                    "body: got 2, expected 0 to 1");
+    library_refused(tractrix_simulation_place_body(simulation, 1, NULL, &error), TRACTRIX_USAGE,
+                    "NULL");
     tractrix_simulation_destroy(simulation);
-    tractrix_scene_destroy(scene);
 }
 
 // --- Lifetimes.
@@ -636,7 +765,9 @@ static void works_in_a_borrowed_context(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_scene_of_several_bodies_moves_as_it_says),
+        cmocka_unit_test(the_host_moves_one_of_two_bodies),
+        cmocka_unit_test(the_host_deforms_one_of_two_meshes),
+        cmocka_unit_test(refuses_bodies_that_are_not_there),
         cmocka_unit_test(maps_strands_in_their_order),
         cmocka_unit_test(follows_poses),
         cmocka_unit_test(moves_as_the_scene_would),

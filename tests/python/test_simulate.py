@@ -76,6 +76,33 @@ def test_hair_is_bound_to_a_mesh_that_deforms(curls):
     np.testing.assert_allclose(last[:, 0, :3], curls[:, 0] + (0, 0.004, 0), atol=1e-5)
 
 
+def test_bodies_of_a_scene_are_placed(tmp_path, curls):
+    np.savez(tmp_path / "curls.npz", points=curls)
+    scene = tmp_path / "two.json"
+    scene.write_text('{"algo": "none", "bodies": [{"sections": [{"file": "curls.npz", "unit": "m"}]}, '
+                     '{"sections": [{"file": "curls.npz", "unit": "m"}]}]}')
+    roots = curls[:, 0]
+    around = np.array([[-0.01, 0, -0.01], [0.01, 0, -0.01], [0, 0, 0.01]])
+    vertices = (roots[:, None] + around).reshape(-1, 3)
+    mesh = vertices, np.arange(len(vertices)).reshape(-1, 3)
+    with tractrix.Simulation(scene) as pair:
+        pair.place(1, moved(0.02))
+        pair.advance()
+        np.testing.assert_allclose(pair.positions(0)[:, 0, :3], roots, atol=1e-6)
+        np.testing.assert_allclose(pair.positions(1)[:, 0, :3], roots + [0.02, 0, 0], atol=1e-6)
+        for wrong in ((2, moved(0)), (-1, moved(0)), ("x", moved(0)), (0, None)):
+            with pytest.raises(ValueError, match="body|place"):
+                pair.place(*wrong)
+        with pytest.raises(ValueError, match="2 bodies"):
+            pair.advance(moved(0))
+    with tractrix.Simulation(scene, mesh={1: mesh}, mesh_unit="m", deforms=True) as pair:
+        pair.place(1, mesh=vertices + [0, 0.01, 0])
+        pair.advance()
+        np.testing.assert_allclose(pair.positions(1)[:, 0, :3], roots + [0, 0.01, 0], atol=1e-5)
+    with pytest.raises(ValueError, match="body: got 2"):
+        tractrix.Simulation(scene, mesh={2: mesh}, mesh_unit="m")
+
+
 def test_followers_are_asked_for(curls):
     with tractrix.Simulation(curls, unit="m", followers=2, algo="none") as simulation:
         assert simulation.positions().shape == (12, 8, 4)
