@@ -72,7 +72,8 @@ static const Option OPTIONS[] = {
      "stress: run this case of --algo, as a failed case is printed, or 'plain'; light: only these "
      "cases, separated by commas"},
     {"way", 0, OPTION_STRING, AT(bench.ways), "LIST", 0, 0,
-     "light: only these methods of computing light, or all (default: methods with a stated bound)"},
+     "light: only these methods of computing light, or all of tractrix-render (default: methods "
+     "with a stated bound); 'traced one', 'traced': by a path tracer, one bounce and 64"},
     {"render", 0, OPTION_STRING, AT(bench.render), "TEXT", 0, 0,
      "light, groom: options of tractrix-render for every scene, for example --render='--smooth 3'"},
     {"picture", 0, OPTION_STRING, AT(bench.picture), "FILE.png", 0, 0,

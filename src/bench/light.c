@@ -3,6 +3,7 @@
 #include "bench/bench_commands.h"
 #include "bench/light_case.h"
 #include "bench/light_stage.h"
+#include "bench/light_traced.h"
 #include "image/pfm.h"
 #include "image/png.h"
 #include "run/caption.h"
@@ -20,14 +21,15 @@ typedef struct Way {
     LightTable table;
     bool extra; // measured only if it is named, or with --way all
     double mean_least, mean_most, rel_most, all_rel_most;
+    int orders; // not 0: drawn by light_traced.h, which follows this many
 } Way;
 
 // The path tracer's strands are smooth curves through the vertices, as with --smooth.
 #define CURVES  "--smooth 3 --shadow-size 512 "
-#define UNBOUND LIGHT_ALL, true, NAN, NAN, NAN, NAN
+#define UNBOUND LIGHT_ALL, true, NAN, NAN, NAN, NAN, 0
 static const Way WAYS[] = {
-    {"none", CURVES "--scatter none", LIGHT_ONE, false, 0.93, 1.08, 0.16, NAN},
-    {"grid", CURVES "--scatter grid", LIGHT_ALL, false, 0.92, 1.12, 0.16, 0.10},
+    {"none", CURVES "--scatter none", LIGHT_ONE, false, 0.93, 1.08, 0.16, NAN, 0},
+    {"grid", CURVES "--scatter grid", LIGHT_ALL, false, 0.92, 1.12, 0.16, 0.10, 0},
     {"draft", "--quality draft", UNBOUND},
     {"normal", "--quality normal", UNBOUND},
     {"final", "--quality final", UNBOUND},
@@ -40,7 +42,10 @@ static const Way WAYS[] = {
     {"map 256", CURVES "--scatter grid --shadow-size 256", UNBOUND},
     {"map 1024", CURVES "--scatter grid --shadow-size 1024", UNBOUND},
     {"straight", CURVES "--scatter grid --smooth 1", UNBOUND},
+    {"traced one", "", LIGHT_ONE, true, NAN, NAN, NAN, NAN, 1},
+    {"traced", "", LIGHT_ALL, true, NAN, NAN, NAN, NAN, 64},
 };
+enum { TRACED_PATHS = 8 }; // for each pixel and frame of --frames
 enum { WAY_COUNT = sizeof WAYS / sizeof *WAYS };
 
 // `mean_*`: the mean over the tracer's mean; `rel_*`: the RMS difference of blocks over the RMS of
@@ -126,15 +131,30 @@ static double difference(const Image *image, const float *first)
     return sqrt(off / all);
 }
 
+static void compare(const LightCase *lit, const Way *way, const Image *image, Row *row)
+{
+    LightError off = light_case_compare(lit, way->table, image);
+    row->mean_r = off.mean[0], row->mean_g = off.mean[1], row->mean_b = off.mean[2];
+    row->rel_r = off.rel[0], row->rel_g = off.rel[1], row->rel_b = off.rel[2];
+}
+
+// Compares our own path tracer's image.
+static Result measure_traced(LightStage *stage, const LightCase *lit, const Way *way, int frames,
+                             Row *row, Error *error)
+{
+    TRY(light_traced_draw(stage, way->orders, TRACED_PATHS * frames, error));
+    compare(lit, way, &stage->image, row);
+    row->moving_ms_min = row->moving_ms_median = row->still_ms_min = row->still_ms_median = NAN;
+    return RESULT_OK;
+}
+
 // Compares the first image, which is the image that a run of one frame writes. Then measures times.
 static Result measure(LightStage *stage, const LightCase *lit, const Way *way, int frames, Row *row,
                       Error *error)
 {
     Times moving, still;
     TRY(light_stage_draw(stage, true, error));
-    LightError off = light_case_compare(lit, way->table, &stage->image);
-    row->mean_r = off.mean[0], row->mean_g = off.mean[1], row->mean_b = off.mean[2];
-    row->rel_r = off.rel[0], row->rel_g = off.rel[1], row->rel_b = off.rel[2];
+    compare(lit, way, &stage->image, row);
     float *first = malloc(image_size(&stage->image));
     if (!first) return error_set(error, RESULT_FAILED, "no memory for an image");
     memcpy(first, stage->image.pixels, image_size(&stage->image));
@@ -372,11 +392,12 @@ static Result add_before(LightRun *run, const LightCase *lit, Error *error)
 
 // --- All cases.
 
-// Whether to measure a way: it is named, or --way all, or without --way it has bounds.
+// Whether to measure a way: it is named, or --way all (without those by our path tracer, which take
+// minutes), or without --way it has bounds.
 static bool is_wanted(const BenchOptions *options, const Way *way)
 {
     if (!options->ways) return !way->extra;
-    return bench_options_lists(options->ways, "all") ||
+    return (bench_options_lists(options->ways, "all") && !way->orders) ||
            bench_options_lists(options->ways, way->name);
 }
 
@@ -411,7 +432,8 @@ static Result run_way(LightRun *run, const LightCase *lit, int w, double coverag
     snprintf(raster, sizeof raster, "--raster %s", row.raster);
     Result result =
         open_stage(&stage, run->gpu, lit, (const char *[]){way->flags, raster, own}, error);
-    THEN(result, measure(&stage, lit, way, run->options->frames, &row, error));
+    THEN(result, (way->orders ? measure_traced : measure)(&stage, lit, way, run->options->frames,
+                                                          &row, error));
     if (result == RESULT_OK) {
         row.coverage = coverage;
         row.width = stage.image.width, row.height = stage.image.height;

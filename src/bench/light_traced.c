@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "bench/light_traced.h"
+#include "image/image.h"
+#include "reference/light_reference.h"
+#include "scene/camera.h"
+#include "strands/paint.h"
+
+#include <math.h>
+
+static Result take_section(const SectionParams *params, const Strands *strands,
+                           LightReferenceItem *item, Error *error)
+{
+    float color[3];
+    if (params->shading != SHADING_MARSCHNER || params->cone_angle != 0 || params->tip_ratio != 1 ||
+        params->opacity != 1)
+        return error_set(error, RESULT_USAGE,
+                         "--way traced: expected sections with shading marschner, cone_angle 0, "
+                         "tip_ratio 1 and opacity 1");
+    paint_color(params, color);
+    *item = (LightReferenceItem){
+        .strands = strands,
+        .radius = (double)paint_radius(params, strands, 0),
+        .fibre = fibre_reference_create(
+            (double)params->refraction, (double)params->roughness * M_PI / 180,
+            (double)params->azimuthal_roughness * M_PI / 180,
+            (const double[]){(double)color[0], (double)color[1], (double)color[2]})};
+    return RESULT_OK;
+}
+
+static bool has_mesh(const Assets *assets)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < assets->body_count; ++i) any |= assets->meshes[i].triangle_count > 0;
+    return any;
+}
+
+Result light_traced_draw(LightStage *stage, int orders, int paths, Error *error)
+{
+    const Scene *scene = &stage->scene;
+    LightReferenceItem items[SCENE_MAX_SECTIONS];
+    Light lights[SCENE_MAX_LIGHTS];
+    float around[2][3];
+    if (has_mesh(&stage->assets) || stage->assets.environment.parts)
+        return error_set(
+            error, RESULT_USAGE,
+            "--way traced: the scene has a mesh or an environment: expected hair only");
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        TRY(take_section(&scene->sections[i].params, &stage->assets.strands[i], &items[i], error));
+    camera_lights(lights, scene, &stage->framing, 0);
+    for (int c = 0; c < 3; ++c) {
+        around[0][c] = (float)image_linear_from_srgb((double)scene->run.sky[c]);
+        around[1][c] = (float)image_linear_from_srgb((double)scene->run.ground[c]);
+    }
+    const LightReferenceScene traced = {.items = items,
+                                        .item_count = scene->section_count,
+                                        .view = &stage->view,
+                                        .lights = lights,
+                                        .light_count = scene->light_count,
+                                        .sky = around[0],
+                                        .ground = around[1]};
+    return light_reference_draw(&stage->image, &traced, orders, paths, 1, error);
+}
