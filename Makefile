@@ -438,4 +438,4 @@ FORCE:
 .PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests demo test bench bench-image stress mutate torture growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
--include $(patsubst %.o,%.d,$(OBJECTS) $(MAINS:src/%.c=$(OUT)/%.o) $(TEST_PROGRAMS:%=%.o) $(SUPPORT_OBJECTS))
+-include $(wildcard $(OUT)/*.d $(OUT)/*/*.d $(OUT)/*/*/*.d)
