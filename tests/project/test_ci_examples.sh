@@ -26,8 +26,9 @@ cp -r assets examples "$work/repo"
 cat >"$work/stubs/make" <<END
 #!/bin/sh
 echo "make \$*" >>"$work/calls"
-while [ "\$1" != -C ]; do shift; done
-mkdir -p "\$2/out/release" && ln -sf "$programs"/tractrix-* "\$2/out/release/"
+folder=.
+while [ \$# -gt 0 ]; do [ "\$1" != -C ] || folder=\$2; shift; done
+mkdir -p "\$folder/out/release" && ln -sf "$programs"/tractrix-* "\$folder/out/release/"
 END
 cat >"$work/stubs/git" <<END
 #!/bin/sh
@@ -192,7 +193,7 @@ claim "the workflow says what to do"
 comment() {
     rm -f "$work/sent" "$work/sent.call"
     expected=$1
-    (cd "$work/pull" && exec env GITHUB_REPOSITORY=me/grooms GH_TOKEN=x HEAD_SHA="$sha" REPORT_URL=https://github.com/me/grooms/actions/runs/1 TRACTRIX_BIN="$programs" \
+    (cd "$work/pull" && exec env GITHUB_REPOSITORY=me/grooms GH_TOKEN=x HEAD_SHA="$sha" REPORT_URL=https://github.com/me/grooms/actions/runs/1 \
         IMAGES_REMOTE="$work/pictures.git" RUNNER_TEMP="$work/pull" bash --noprofile --norc -e -o pipefail "$work/steps/say-what-needs-a-look.sh") >"$work/out" 2>"$work/err" </dev/null
     status=$?
     if [ "$status" = "$expected" ]; then good; else bad "exit status $status, expected $expected"; fi
@@ -229,7 +230,9 @@ claim "with a branch the comment has pictures, which are made anew and go after 
 mv "$work/stubs/git" "$work/git"
 "$real" init --quiet --bare "$work/pictures.git"
 IMAGES_BRANCH=pictures; export IMAGES_BRANCH
-sed 's/^export IMAGES_BRANCH=.*//' "$work/steps/say-what-needs-a-look.sh" >"$work/x" && mv "$work/x" "$work/steps/say-what-needs-a-look.sh"
+comment 1; one_line; says "no out/release/tractrix-compare, which makes pictures"; none "$work/sent"
+if (cd "$work/pull" && bash --noprofile --norc -e -o pipefail "$work/steps/build-the-program-that-makes-pictures.sh" >/dev/null); then good; else bad "no program"; fi
+in_file "$work/calls" " out/release/tractrix-compare"
 comment 0; jq -r .body "$work/sent" >"$work/body"
 at=$(date -u +%Y-%m-%d)/$sha
 in_file "$work/body" "![wrong.png](https://raw.githubusercontent.com/me/grooms/refs/heads/pictures/$at/wrong.png.jpg)"
