@@ -296,6 +296,14 @@ for file in .github/workflows/*.yml; do holds "$steps" jobs "$file"; done
 sed 's/scripts\/release/scripts\/relaese/' .github/workflows/release.yml >"$work/bad.yml"
 if "$steps" jobs "$work/bad.yml" 2>/dev/null >&2; then bad "a workflow that runs no script of ours passes"; else good; fi
 
+claim "a release without an engine for its container fails if the container was asked for"
+mkdir "$work/tools"
+for tool in bash dirname realpath; do ln -s "$(command -v $tool)" "$work/tools/"; done
+PATH=$work/tools "$work/tools/bash" scripts/release "$work/dist" archive container >"$work/out" 2>"$work/err"
+if [ $? = 1 ]; then good; else bad "the container is left out"; fi
+one_line; says "release: container: no buildah or podman here: expected one of them"; none "$work/dist"
+in_file .github/workflows/release.yml "scripts/release dist archive wheel packages container"
+
 claim "GitLab's job clones, builds and compares, and keeps what its report names"
 holds "$steps" gitlab examples/ci/gitlab-ci.yml images "$work/steps/job.sh"; says "tractrix-images/report.xml"
 if command -v shellcheck >/dev/null; then holds shellcheck -s sh -e SC2086 "$work/steps/job.sh"; fi
