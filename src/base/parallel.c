@@ -42,7 +42,8 @@ int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data)
     return reason;
 }
 
-// --- The waiting threads. Only short lists are changed while the lock is held, never a part done.
+// --- The waiting threads. While the lock is held, lists are changed and threads are started, but
+// no part is done.
 
 // A call of parallel_run. It lies on the stack of its caller, who removes it from the list and then
 // waits for the threads that have joined.

@@ -3,19 +3,38 @@
 #include "image/image.h"
 #include "reference/light_reference.h"
 #include "scene/camera.h"
+#include "strands/follow_plan.h"
 #include "strands/paint.h"
 
 #include <math.h>
+#include <string.h>
 
-static Result take_section(const SectionParams *params, const Strands *strands,
+static bool has_followers(const SectionParams *params, const Strands *strands)
+{
+    bool given = !params->followers.automatic && params->followers.value >= 0;
+    return given ? params->followers.value > 0
+                 : strands->followers > 0 || follow_plan_fills(params, strands);
+}
+
+// Whether the fibres are alike, with scales that are not tilted, and lie where the file has them.
+static bool is_plain(const SectionParams *params, const Strands *strands, const Hair *hair)
+{
+    return strcmp(params->algo, "none") == 0 && params->shading == SHADING_MARSCHNER &&
+           params->cone_angle == 0 && params->tip_ratio == 1 && params->opacity == 1 &&
+           params->color_variation == 0 && params->warmth_variation == 0 && !hair->is_painted &&
+           !has_followers(params, strands);
+}
+
+static Result take_section(const SectionParams *params, const Strands *strands, const Hair *hair,
                            LightReferenceItem *item, Error *error)
 {
     float color[3];
-    if (params->shading != SHADING_MARSCHNER || params->cone_angle != 0 || params->tip_ratio != 1 ||
-        params->opacity != 1)
+    if (!is_plain(params, strands, hair))
         return error_set(error, RESULT_USAGE,
-                         "--way traced: expected sections with shading marschner, cone_angle 0, "
-                         "tip_ratio 1 and opacity 1");
+                         "--way traced: expected sections with algo none, shading marschner, "
+                         "cone_angle 0, tip_ratio 1, opacity 1, color_variation and "
+                         "warmth_variation 0, without followers and without colours, opacity or "
+                         "thickness of a file");
     paint_color(params, color);
     *item = (LightReferenceItem){
         .strands = strands,
@@ -45,7 +64,8 @@ Result light_traced_draw(LightStage *stage, int orders, int paths, Error *error)
             error, RESULT_USAGE,
             "--way traced: the scene has a mesh or an environment: expected hair only");
     for (uint32_t i = 0; i < scene->section_count; ++i)
-        TRY(take_section(&scene->sections[i].params, &stage->assets.strands[i], &items[i], error));
+        TRY(take_section(&scene->sections[i].params, &stage->assets.strands[i],
+                         &stage->simulation.sections[i].hair, &items[i], error));
     camera_lights(lights, scene, &stage->framing, 0);
     for (int c = 0; c < 3; ++c) {
         around[0][c] = (float)image_linear_from_srgb((double)scene->run.sky[c]);

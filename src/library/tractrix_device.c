@@ -163,9 +163,10 @@ static Result check_process(Error *error)
     static atomic_int opener; // 0: no process yet
     int before = 0, own = (int)getpid();
     if (atomic_compare_exchange_strong(&opener, &before, own) || before == own) return RESULT_OK;
-    return error_set(error, RESULT_NO_GL,
-                     "a device was opened before fork(), and drivers do not survive it: expected "
-                     "the first device after fork(), or exec() in the child");
+    return error_set(
+        error, RESULT_NO_GL,
+        "tractrix_device_open was called before fork(), and drivers do not survive it: "
+        "expected its first call after fork(), or exec() in the child");
 }
 
 static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *asked, Error *error)

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference/light_reference.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
-
-#include <cglm/cglm.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -377,7 +375,8 @@ static void draw_row(const Paths *paths, int y)
 static void draw_rows(void *data, int part)
 {
     const Paths *paths = data;
-    for (int y = part; y < paths->image->height; y += paths->parts) draw_row(paths, y);
+    for (int y = part; y < paths->image->height && !interrupt_requested(); y += paths->parts)
+        draw_row(paths, y);
 }
 
 Result light_reference_draw(Image *image, const LightReferenceScene *scene, int orders, int count,
@@ -394,6 +393,6 @@ Result light_reference_draw(Image *image, const LightReferenceScene *scene, int 
     free(paths.cylinders);
     free(paths.first);
     free(paths.of_cell);
-    return good ? RESULT_OK
-                : error_set(error, RESULT_FAILED, "no memory for %u cylinders", paths.count);
+    if (!good) return error_set(error, RESULT_FAILED, "no memory for %u cylinders", paths.count);
+    return interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted") : RESULT_OK;
 }

@@ -31,8 +31,7 @@ typedef struct LightReferenceScene {
 
 // Draws linear light into `image`, an IMAGE_FLOAT of 3 or 4 channels (the fourth is the coverage),
 // on black. `orders`: the most fibres that light meets; 1 is single scattering. `paths`: for each
-// pixel, >= 1. `seed` and nothing else changes the noise. The time is about 10 us a covered pixel
-// and path. RESULT_USAGE for a light that has a place or a radius; RESULT_FAILED when memory is
-// short.
+// pixel, >= 1. `seed` and nothing else changes the noise. RESULT_USAGE for a light that has a place
+// or a radius; RESULT_FAILED when memory is short; RESULT_INTERRUPTED (interrupt.h).
 Result light_reference_draw(Image *image, const LightReferenceScene *scene, int orders, int paths,
                             uint64_t seed, Error *error);
