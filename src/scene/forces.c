@@ -56,11 +56,12 @@ static void spread_wind(Forces *forces, const vec3 main, float spread_deg)
 
 void forces_evaluate(Forces *forces, const Scene *scene, double time)
 {
+    const double begun = fmax(time, 0); // the scene's clock stands while the hair settles
     *forces = (Forces){0};
-    track_evaluate_or(&scene->gravity, scene->run.gravity, time, forces->gravity);
+    track_evaluate_or(&scene->gravity, scene->run.gravity, begun, forces->gravity);
     if (!blows(scene)) return;
     vec3 main = {0};
-    track_evaluate_or(&scene->wind, scene->run.wind, time, main);
+    track_evaluate_or(&scene->wind, scene->run.wind, begun, main);
     glm_vec3_scale(main, (float)(1 + (double)scene->run.gust * gust_at(&scene->run, time)), main);
     if (glm_vec3_norm2(main) > 0) spread_wind(forces, main, scene->run.wind_spread);
 }

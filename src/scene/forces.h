@@ -12,7 +12,8 @@ typedef struct Forces {
     float wind[4][3]; // m/s
 } Forces;
 
-// Forces at `time` (s): from keyframes if the scene has them, otherwise constant. The wind's
+// Forces at `time` (s): from keyframes or formulas if the scene has them, otherwise constant.
+// Before time 0 keyframes and formulas keep their values of time 0, as the head does. The wind's
 // strength is modulated by sines of gust_period and fractions of it, between (1 - gust) and (1 +
 // gust) times the mean.
 void forces_evaluate(Forces *forces, const Scene *scene, double time);

@@ -28,6 +28,7 @@ typedef struct RigidTrack {
                                  // are none
 } RigidTrack;
 
+// The largest coordinate of a moved body (m), and the largest value of a formula (m or degrees).
 #define RIGID_TRACK_MAX 1e6
 
 // The ranges of formulas: up to RIGID_TRACK_MAX in either direction.

@@ -234,6 +234,16 @@ static void put_alternatives(json_t *track, bool *good)
         good);
 }
 
+// At least one of "keys" and the formulas with these names; "interpolation" only beside "keys".
+static void put_choice(json_t *track, const char *const names[3], bool *good)
+{
+    json_t *any = json_pack("[{s:[s]}]", "required", "keys");
+    for (int i = 0; i < 3 && names[i]; ++i)
+        append(any, json_pack("{s:[s]}", "required", names[i]), good);
+    put(track, "anyOf", any, good);
+    put(track, "dependencies", json_pack("{s:[s]}", "interpolation", "keys"), good);
+}
+
 // The schema of a track for a section's number or color.
 static json_t *number_track(const ParamInfo *info)
 {
@@ -308,10 +318,7 @@ static json_t *camera_track(void)
               json_pack("{s:o, s:o, s:o}", "eye", vector(formula(), 3), "target",
                         vector(formula(), 3), "fov", formula()));
     bool good = result;
-    put(result, "anyOf",
-        json_pack("[{s:[s]}, {s:[s]}, {s:[s]}, {s:[s]}]", "required", "keys", "required", "eye",
-                  "required", "target", "required", "fov"),
-        &good);
+    put_choice(result, (const char *const[3]){"eye", "target", "fov"}, &good);
     return finish(result, good);
 }
 
@@ -324,10 +331,7 @@ static json_t *head_track(void)
                                      "rotate", formulas));
     bool good = result;
     json_decref(formulas);
-    put(result, "anyOf",
-        json_pack("[{s:[s]}, {s:[s]}, {s:[s]}]", "required", "keys", "required", "translate",
-                  "required", "rotate"),
-        &good);
+    put_choice(result, (const char *const[3]){"translate", "rotate"}, &good);
     return finish(result, good);
 }
 

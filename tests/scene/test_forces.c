@@ -184,6 +184,35 @@ static void formulas_blow_with_the_time(void **state)
     scene_destroy(&scene);
 }
 
+// Only times from 0 are checked for formulas that have no value, and only they count for
+// --substeps auto.
+static void before_time_0_formulas_and_keys_stand_still(void **state)
+{
+    (void)state;
+    Scene scene;
+    Forces start, before;
+    make_scene(&scene, 9, 9, 9);
+    scene.run.gust = 0;
+    for (uint32_t i = 0; i < 3; ++i)
+        assert_int_equal(track_set_formula(&scene.wind, i, i == 0 ? "exp(-t)" : "2 + sqrt(t)",
+                                           &(TrackRange){-1e6, 1e6, 1}, NULL),
+                         RESULT_OK);
+    for (int time = -4; time <= 0; time += 2)
+        assert_int_equal(keyframes_append(&scene.gravity.keys, time,
+                                          (const float[]){0, (float)time - 5, 0}, 3, NULL),
+                         RESULT_OK);
+    forces_evaluate(&start, &scene, 0);
+    forces_evaluate(&before, &scene, -3);
+    assert_true(start.gravity[1] == -5);
+    assert_memory_equal(&before, &start, sizeof start);
+    scene.run.gust = 0.5f; // gusts go on
+    forces_evaluate(&start, &scene, 0);
+    forces_evaluate(&before, &scene, -3);
+    assert_memory_equal(before.gravity, start.gravity, sizeof start.gravity);
+    assert_true(fabsf(before.wind[0][0] - start.wind[0][0]) > 1e-3f);
+    scene_destroy(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -195,6 +224,7 @@ int main(void)
         cmocka_unit_test(gusts_stay_within_their_share_and_vary),
         cmocka_unit_test(keyframes_win_over_constants),
         cmocka_unit_test(formulas_blow_with_the_time),
+        cmocka_unit_test(before_time_0_formulas_and_keys_stand_still),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
