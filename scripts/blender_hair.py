@@ -1245,11 +1245,12 @@ def camera_matrix(eye: np.ndarray, target: np.ndarray, up: np.ndarray) -> Matrix
 def place_camera(context, members: dict, times: np.ndarray) -> None:
     """A camera with the pose and the vertical field of view of a scene file."""
     track = members.get("camera", {})
-    if any(k in track for k in ("eye", "target", "fov")):
-        say("the camera moves by formulas: they are not imported")
+    by_formulas = any(k in track for k in ("eye", "target", "fov"))
     if not isinstance(members.get("eye"), list) and not any("eye" in k for k in track.get("keys", [])):
-        say("the scene file has no camera: none is imported")
+        say("the camera moves by formulas: no camera is imported" if by_formulas else "the scene file has no camera: none is imported")
         return
+    if by_formulas:
+        say("the camera moves by formulas: they are not imported")
     scene, unit = context.scene, unit_of(context.scene)
     eye, target = (to_z_up(track_values(track, k, times, members.get(k, [0, 0, 0]))) / unit for k in ("eye", "target"))
     fov = track_values(track, "fov", times, members.get("fov", 30.0))

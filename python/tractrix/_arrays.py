@@ -37,7 +37,7 @@ def numbers(name: str, value: Any, shape: tuple[int | None, ...], dtype: Any = n
 
 
 def index(name: str, value: Any) -> int:
-    """A whole number that numbers something, from 0."""
+    """An index, from 0."""
     try:
         number = operator.index(value)
     except TypeError:

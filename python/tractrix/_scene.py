@@ -75,17 +75,19 @@ def _add_strands(scene: Handle, strands: Any, given: dict[str, Any]) -> None:
 def _set_meshes(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], parameters: Mapping[str, Any]) -> None:
     unit, up = given.pop("mesh_unit", parameters.get("unit")), given.pop("mesh_up", parameters.get("up"))
     if not isinstance(mesh, Mapping):
-        with_arrays = _mesh("mesh", mesh, deforms, unit, up)
-        call("tractrix_scene_set_mesh", scene.value, ctypes.byref(with_arrays))
+        made = _mesh("mesh", mesh, deforms, unit, up, "(vertices, triangles), a path, or {body: (vertices, triangles)}")
+        call("tractrix_scene_set_mesh", scene.value, ctypes.byref(made))
         return
+    if not mesh:
+        raise usage("mesh: got {}: expected {body: (vertices, triangles)} for one body or more")
     for body, arrays in mesh.items():
-        with_arrays = _mesh(f"mesh[{body}]", arrays, deforms, unit, up)
-        call("tractrix_scene_set_body_mesh", scene.value, _arrays.index("mesh", body), ctypes.byref(with_arrays))
+        made = _mesh(f"mesh[{body!r}]", arrays, deforms, unit, up, "(vertices, triangles)")
+        call("tractrix_scene_set_body_mesh", scene.value, _arrays.index("mesh", body), ctypes.byref(made))
 
 
-def _mesh(name: str, mesh: Any, deforms: bool, unit: Any, up: Any) -> Mesh:
+def _mesh(name: str, mesh: Any, deforms: bool, unit: Any, up: Any, expected: str) -> Mesh:
     if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
-        raise usage(f"{name}: expected (vertices, triangles) or a path, or such pairs by the number of their body")
+        raise usage(f"{name}: got {type(mesh).__name__}: expected {expected}")
     vertices = _arrays.numbers(f"{name}[0]", mesh[0], (None, 3))
     triangles = _arrays.numbers(f"{name}[1]", mesh[1], (None, 3), np.uint32)
     made = Mesh(metres_per_unit=_arrays.metres("mesh_unit", unit), up_z=_arrays.up_z("mesh_up", up), deforms=deforms,

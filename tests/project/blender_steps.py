@@ -4,6 +4,8 @@
 Arguments after `--`: folder of the programs, scratch folder. The last line is `N passed, N failed, N skipped`.
 """
 
+import contextlib
+import io
 import json
 import math
 import os
@@ -382,6 +384,23 @@ def scene_back():
         for name in was:
             same = was[name] == now[name] if isinstance(was[name], (str, bool)) else np.allclose(was[name], now[name], atol=1e-3)
             check(f"{name} of a {was['type']} light", same, (was[name], now[name]))
+
+
+@step
+def camera_by_formulas():
+    """A camera that moves by formulas is not imported; the message says so, and not that the file has none."""
+    empty()
+    times, still = np.zeros(1), {"eye": [0, 0, 2], "target": [0, 0, 0]}
+    for members, line, cameras in (
+        ({"camera": {"eye": ["sin(t)", 0, "cos(t)"]}}, "the camera moves by formulas: no camera is imported", 0),
+        ({}, "the scene file has no camera: none is imported", 0),
+        ({"camera": {"fov": "30-5*t"}, **still}, "the camera moves by formulas: they are not imported", 1),
+    ):
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            hair.place_camera(bpy.context, members, times)
+        check(line, said.getvalue() == f"blender_hair: {line}\n", said.getvalue())
+        check(f"{cameras} cameras", len(bpy.data.cameras) == cameras, len(bpy.data.cameras))
 
 
 @step

@@ -101,6 +101,10 @@ def test_bodies_of_a_scene_are_placed(tmp_path, curls):
         np.testing.assert_allclose(pair.positions(1)[:, 0, :3], roots + [0, 0.01, 0], atol=1e-5)
     with pytest.raises(ValueError, match="body: got 2"):
         tractrix.Simulation(scene, mesh={2: mesh}, mesh_unit="m")
+    with pytest.raises(ValueError, match=r"^mesh\[1\]: got str: expected \(vertices, triangles\)$"):
+        tractrix.Simulation(scene, mesh={1: "ball.obj"}, mesh_unit="m")
+    with pytest.raises(ValueError, match="mesh: got {}: expected"):
+        tractrix.Simulation(scene, mesh={}, deforms=True)
 
 
 def test_followers_are_asked_for(curls):
@@ -156,7 +160,7 @@ def test_a_view_keeps_the_memory_that_it_shows(curls):
     ({"unit": "m", "up": "x"}, "up: got 'x'"),
     ({"unit": "m", "wnd": 1}, "wnd"),
     ({"unit": "m", "fov": 500}, "fov"),
-    ({"unit": "m", "mesh": 3}, "mesh: expected"),
+    ({"unit": "m", "mesh": 3}, "mesh: got int: expected"),
     ({"unit": "m", "mesh": (np.zeros((3, 3)), np.array([[0, 1, -1]]))}, "mesh"),
     ({"unit": "m", "uv": np.zeros((3, 2))}, "uv: shape"),
     ({"unit": "m", "color": np.zeros((12, 8, 2))}, "color: 2 numbers"),
