@@ -20,6 +20,8 @@
 // blocks. Its causes: the sky is sampled in 48 directions, the grid has cells, and lobes are
 // blurred by the width of a direction.
 static const double STATED = 0.03;
+// The RMS of pixels of skin beside hair: cells are coarse beside the edge of the hair.
+static const double STATED_ON_SKIN = 0.03;
 enum { WIDTH = 160, HEIGHT = 120 };
 
 typedef struct Furnace {
@@ -119,9 +121,10 @@ static void fur_vanishes(void **state)
 }
 
 // White skin among white hair: where hair hides the sky it sends the same light, so skin is as
-// bright as the sky. Stated for the mean and the RMS of pixels without hair; measured 0.992 and
-// 0.030. Cells are coarse beside the edge of the hair.
-static void skin_among_hair_vanishes(void **state)
+// bright as the sky. Stated for the mean and the RMS of pixels without hair; measured 0.991 and
+// 0.029. The hair should be as bright, too. It is not (docs/light.md), which is a known error:
+// measured 0.71.
+static void skin_among_hair_vanishes_and_the_hair_is_too_dark(void **state)
 {
     const char *path = temporary_path(state, "furnace.json"),
                *head = "--mesh assets/head.obj --mesh-color #ffffff --scalp-tint 0";
@@ -132,15 +135,20 @@ static void skin_among_hair_vanishes(void **state)
     draw(&covered, path, (const char *[]){head, "--aov coverage", ""});
     const float *light = (const float *)(void *)lit.image.pixels,
                 *coverage = (const float *)(void *)covered.image.pixels;
-    double sum = 0, squares = 0;
+    double sum = 0, squares = 0, dark = 0, hair = 0;
     int skin = 0;
     for (int i = 0; i < WIDTH * HEIGHT; ++i) {
-        double off = (double)light[(size_t)i * (size_t)lit.image.channels] - 1;
-        if (coverage[(size_t)i * (size_t)covered.image.channels] > 0 || off == 0) continue;
+        double off = (double)light[(size_t)i * (size_t)lit.image.channels] - 1,
+               share = (double)coverage[(size_t)i * (size_t)covered.image.channels];
+        if (share > 0) dark += off, hair += share;
+        if (share > 0 || off == 0) continue;
         sum += off, squares += off * off, ++skin;
     }
-    if (!(skin > 1000 && fabs(sum / skin) < STATED && sqrt(squares / skin) < 0.05))
-        fail_msg("mean %g, RMS %g of %d px", sum / skin, sqrt(squares / skin), skin);
+    print_message("skin: mean %.4f, RMS %.4f of %d px; hair: mean %.4f of %g px\n", 1 + sum / skin,
+                  sqrt(squares / skin), skin, 1 + dark / hair, hair);
+    assert_true(skin > 1000 && fabs(sum / skin) < STATED);
+    assert_true(sqrt(squares / skin) < STATED_ON_SKIN);
+    assert_true(hair > 1000 && dark / hair > -0.32 && dark / hair < -0.26);
     light_stage_destroy(&lit);
     light_stage_destroy(&covered);
 }
@@ -189,7 +197,7 @@ int main(void)
         WITH_FILES(curls_vanish_as_triangles),
         WITH_FILES(curls_vanish_with_tilted_scales),
         WITH_FILES(fur_vanishes),
-        WITH_FILES(skin_among_hair_vanishes),
+        WITH_FILES(skin_among_hair_vanishes_and_the_hair_is_too_dark),
         WITH_FILES(an_even_environment_is_a_sky),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

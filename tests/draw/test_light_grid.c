@@ -354,6 +354,7 @@ static void hair_sends_light_onto_skin(void **state)
     (void)state;
     static const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
     static const float suns[][3] = {{0, 1, 0}, {0.6f, 0.8f, 0}, {0, 0.6f, -0.8f}};
+    static const double least[] = {0.86, 0.96, 0.80};
     for (int i = 0; i < 3; ++i) {
         Ball *ball = open_ball(0.8f);
         LightGrid grid = {0};
@@ -388,7 +389,7 @@ static void hair_sends_light_onto_skin(void **state)
                 expected += sum_onto(ball, at, suns[i]);
             }
         }
-        if (!(found > 0.8 * expected && found < 1.02 * expected))
+        if (!(found > least[i] * expected && found < 1.02 * expected))
             fail_msg("sun %d: %g of %g", i, found, expected);
         light_grid_destroy(&grid);
         light_blocks_destroy(&blocks);

@@ -48,17 +48,21 @@ static Mesh make_walls(uint32_t walls)
     return mesh;
 }
 
-// The share at the vertex in this column of the floor's middle row.
+// The share at the vertex in this column of the floor's middle row. The share past the mesh alone
+// is that without hair.
 static float open_at(const Mesh *mesh, const OpennessHair *hair, int column)
 {
     float(*open)[2] = malloc(mesh->vertex_count * sizeof *open);
-    assert_non_null(open);
+    float(*bare)[2] = malloc(mesh->vertex_count * sizeof *bare);
+    assert_true(open && bare);
     NEEDED(openness_find(open, mesh, hair, hair != NULL, error));
+    NEEDED(openness_find(bare, mesh, NULL, 0, error));
     for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
         assert_true(open[v][0] >= 0 && open[v][0] <= open[v][1] && open[v][1] <= 1);
-        if (!hair) assert_true(open[v][0] == open[v][1]);
+        assert_true(open[v][1] == bare[v][1] && bare[v][0] == bare[v][1]);
     }
     float found = open[SIDE / 2 * SIDE + column][0];
+    free(bare);
     free(open);
     return found;
 }

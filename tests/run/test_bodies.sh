@@ -55,7 +55,7 @@ holds "$bin/tractrix-compare" -q "$work/direct/frame_0003.png" "$work/swapped/fr
 claim "what one body changes is found by the cache"
 sed 's/200\*t/190*t/' "$both" >"$work/other.json"
 run 3 "$work/other.json" -q --from-cache "$work/a.cache" -o "$work/x/"; one_line; says "bodies[1].head"
-awk '/^v / { printf "v %s %s %s\n", $2, $3 + 0.001, $4; next } { print }' assets/ball.obj >"$work/big.obj"
+awk '/^v / { printf "v %.7g %.7g %.7g\n", 1.2 * $2, 1.2 * $3 + 0.001, 1.2 * $4; next } { print }' assets/ball.obj >"$work/big.obj"
 run 3 "$both" -q --from-cache "$work/a.cache" -o "$work/x/"; one_line; says "bodies[1].mesh_checksum"
 
 claim "what a list of bodies cannot be is refused by one line with the place"

@@ -72,17 +72,18 @@ static void keys_for_all_sections_give_way_to_a_sections_own(void **state)
     temporary_write(
         state, "s.json",
         "{\"drag\": {\"keys\": [{\"time\": 0, \"value\": 0}, {\"time\": 1, \"value\": 4}], "
-        "\"interpolation\": \"linear\"}, \"sections\": [{\"file\": \"a.tfx\"}, "
-        "{\"file\": \"b.tfx\", \"drag\": 2}]}",
+        "\"interpolation\": \"linear\"}, \"style\": {\"formula\": \"t/4\"}, "
+        "\"sections\": [{\"file\": \"a.tfx\"}, "
+        "{\"file\": \"b.tfx\", \"drag\": 2, \"style\": 0.5}]}",
         0644);
     Scene scene;
     Error error;
     assert_int_equal(scene_read(&scene, temporary_path(state, "s.json"), &error), RESULT_OK);
-    assert_int_equal(scene.sections[0].tracks.count, 1);
+    assert_int_equal(scene.sections[0].tracks.count, 2);
     section_tracks_apply(&scene.sections[0].tracks, 0.25, &scene.sections[0].params);
-    assert_true(scene.sections[0].params.drag == 1);
+    assert_true(scene.sections[0].params.drag == 1 && scene.sections[0].params.style == 0.0625f);
     assert_int_equal(scene.sections[1].tracks.count, 0);
-    assert_true(scene.sections[1].params.drag == 2);
+    assert_true(scene.sections[1].params.drag == 2 && scene.sections[1].params.style == 0.5f);
     scene_destroy(&scene);
 }
 

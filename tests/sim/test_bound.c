@@ -71,9 +71,7 @@ static void check_rigid(const char *algo, const char *variant)
     BodyFixture bound;
     SimulationFixture tracked;
     body_fixture_create(&bound, algo, variant, rigid, 60, 0, 40);
-    create_tracked(
-        &tracked, algo, variant,
-        (const char *const[]){"0.05*(1-cos(3*t))", "0.02*t^2", "-0.1*t", "0.5*(1-cos(4*t))"});
+    create_tracked(&tracked, algo, variant, RIGID);
     simulation_fixture_start(&bound.base);
     simulation_fixture_start(&tracked);
     for (int frame = 0; frame <= 24; frame += 8) {

@@ -72,11 +72,12 @@ static void skin_that_slides_drags_hair(void **state)
     (void)state;
     static const char *const algos[] = {"chain", "split"};
     // The skin below the tip. The tip is behind by (SPEED RADIUS)^2 / (2 friction g) = 0.5 mm until
-    // it has the skin's speed, and the strand holds it back, whose other half lies still.
+    // it has the skin's speed, and the strand holds it back, whose other half lies still. Measured
+    // (chain, split): 0.90 and 0.89 of the skin's way; without friction -0.12 and -0.10.
     double skin = RADIUS * cos(0.51) * sin(SPEED * FRAMES / 60.0);
     for (int i = 0; i < 2; ++i) {
         double held = dragged(algos[i], 1), loose = dragged(algos[i], 0);
-        if (!(held > 0.75 * skin && held < skin && fabs(loose) < 0.25 * skin))
+        if (!(held > 0.85 * skin && held < skin && fabs(loose) < 0.15 * skin))
             fail_msg("%s: %g m with friction, %g without: the skin moves by %g", algos[i], held,
                      loose, skin);
     }
