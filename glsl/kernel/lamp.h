@@ -44,8 +44,9 @@ SHARED_FUNCTION float lamp_bent(float xy, float yz, float zx, float level, float
 }
 
 // The factor by which light on a surface of this colour grows because surfaces like it, which hide
-// all but the share `open` of its view and have its colour and brightness, reflect light on it.
+// all but the share `open` of its view and have its colour and brightness, reflect light on it. At
+// most 100: white surfaces that hide everything from each other would keep their light for ever.
 SHARED_FUNCTION float lamp_between(float open, float color)
 {
-    return 1.0f / (1.0f - color * (1.0f - open));
+    return 1.0f / SHARED_MAX(1.0f - color * (1.0f - open), 0.01f);
 }

@@ -309,6 +309,7 @@ static void surfaces_that_hide_the_sky_reflect_its_light(void **state)
             if (!(fabs(shown / (o / (1 - c * (1 - o))) - 1) < 0x1p-9))
                 fail_msg("grey %g, open %g: %g of the light", c, o, shown);
         }
+        assert_true(sky_on_square(&mesh, greys[g], 0) < 1e-6 * whole); // no light, not NaN
     }
     mesh_destroy(&mesh);
 }
