@@ -32,9 +32,6 @@ bool cell_inside(ivec3 cell)
 // Index of the first of three floats of an ordinate and slot.
 int ordinate_address(int d, int slot) { return 3 * (d * int(light_params.room) + slot); }
 
-// How far the sum over all orders lies behind an order's light, for skin.
-int sent_further() { return 3 * LIGHT_ORDINATES * int(light_params.room); }
-
 // The column of an ordinate and channel in a row of LIGHT_WIDE.
 int wide_address(int d, int channel)
 {

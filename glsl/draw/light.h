@@ -20,12 +20,11 @@
 #define BIND_LIGHT_SEEN_OUT   3 // three float a point of the hair
 #define BIND_LIGHT_FACES_OUT  3 // six vec4 a cell, see kernel/onto.h
 #define BIND_LIGHT_DEPTH_OUT  4 // float a slot and ordinate: optical depth over a side
-#define BIND_LIGHT_SOURCE_OUT                                                                      \
-    5                          // three float an ordinate and slot: light that hair sends; then, on
-                               // skin, the same summed over all orders
-#define BIND_LIGHT_ORDER_OUT 6 // likewise: light of the last order
-#define BIND_LIGHT_ONTO_OUT  6 // four halves an ordinate and cell: light of hair alone
-#define BIND_LIGHT_TOTAL_OUT 7 // likewise: light of all orders so far
+#define BIND_LIGHT_SOURCE_OUT 5 // three float an ordinate and slot: light that hair sends
+#define BIND_LIGHT_ORDER_OUT  6 // likewise: light of the last order
+#define BIND_LIGHT_ONTO_OUT   6 // four halves an ordinate and cell: light of hair alone
+#define BIND_LIGHT_TOTAL_OUT  7 // as ORDER: light of all orders so far
+#define BIND_LIGHT_SENT_OUT   7 // as SOURCE, summed over all orders but the last, for skin
 
 // Textures of float, beside those of hair (shared.h), its paint and its shadows.
 #define BIND_LIGHT_TABLES  1 // see LIGHT_TANGENT_AT

@@ -164,8 +164,6 @@ void main()
     depth[slot * LIGHT_ORDINATES + d] = tau;
     int at = ordinate_address(d, slot);
     for (int k = 0; k < 3; ++k) source[at + k] = sent[k];
-    for (int k = 0; k < 3 && light_params.walled == 2u; ++k)
-        source[at + sent_further() + k] = sent[k];
     if (d > 0) return;
     cell[slot].glow = vec4(light_params.walled != 0u ? glow : vec3(0.0), 0.0);
     cell[slot].tint = vec4(tint, 0.0);

@@ -11,6 +11,7 @@ layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; 
 layout(std430, binding = BIND_LIGHT_STATE_OUT) readonly buffer State { LightState state; };
 layout(std430, binding = BIND_LIGHT_SOURCE_OUT) buffer Source { float source[]; };
 layout(std430, binding = BIND_LIGHT_ORDER_OUT) readonly buffer Order { float order[]; };
+layout(std430, binding = BIND_LIGHT_SENT_OUT) buffer Sent { float sent[]; };
 
 shared vec3 from[LIGHT_ORDINATES];
 
@@ -33,9 +34,10 @@ void main()
         mean += from[i];
     }
     sum *= cell[slot].tint.rgb;
-    for (int k = 0; k < 3; ++k) source[at + k] = sum[k];
-    for (int k = 0; k < 3 && light_params.walled == 2u; ++k)
-        source[at + sent_further() + k] += sum[k];
+    for (int k = 0; k < 3; ++k) {
+        if (light_params.walled == 2u) sent[at + k] += source[at + k];
+        source[at + k] = sum[k];
+    }
     // The mesh reflects its colour's share of the light equally in all directions.
     if (d == 0) cell[slot].glow.rgb = draw_params.mesh_color.rgb * mean / float(LIGHT_ORDINATES);
 }

@@ -23,6 +23,7 @@ layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float dep
 layout(std430, binding = BIND_LIGHT_SOURCE_OUT) readonly buffer Source { float source[]; };
 #if ONTO
 layout(std430, binding = BIND_LIGHT_ONTO_OUT) writeonly buffer Onto { uvec2 onto[]; };
+layout(std430, binding = BIND_LIGHT_SENT_OUT) readonly buffer Sent { float sent[]; };
 #else
 layout(std430, binding = BIND_LIGHT_ORDER_OUT) writeonly buffer Order { float order[]; };
 layout(std430, binding = BIND_LIGHT_TOTAL_OUT) buffer Total { float total[]; };
@@ -93,12 +94,12 @@ void cross_onto(int at_cell, inout vec3 light, int slot)
 {
     vec3 mean = light;
     if (slot >= 0 && slot < int(state.filled)) {
-        int at = ordinate_address(d, slot), all = at + sent_further();
+        int at = ordinate_address(d, slot);
         float tau = depth[slot * LIGHT_ORDINATES + d] * longer, left = cell_left(tau);
-        vec3 sent = vec3(source[all], source[all + 1], source[all + 2]) +
-                    state.more.rgb * vec3(source[at], source[at + 1], source[at + 2]);
-        mean = sent + (light - sent) * cell_mean_share(tau, left);
-        light = sent + (light - sent) * left;
+        vec3 last = vec3(source[at], source[at + 1], source[at + 2]),
+             all = vec3(sent[at], sent[at + 1], sent[at + 2]) + last + state.more.rgb * last;
+        mean = all + (light - all) * cell_mean_share(tau, left);
+        light = all + (light - all) * left;
     }
     onto[d * int(light_params.count.w) + at_cell] =
         uvec2(packHalf2x16(mean.rg), packHalf2x16(vec2(mean.b, 0.0)));

@@ -5,8 +5,8 @@
 
 layout(location = 0) in vec3 position; // m, the head's frame
 layout(location = 1) in vec3 normal;
-layout(
-    location = 2) in vec2 open; // shares of the sky: with hair and mesh in the way, with the mesh
+// Shares of the sky: with hair and mesh in the way, with the mesh.
+layout(location = 2) in vec2 open;
 layout(location = 3) in vec3 tint; // factors of the mesh's colour
 
 invariant gl_Position; // the same in both of its programs

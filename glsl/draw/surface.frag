@@ -5,8 +5,8 @@ in vec3 world_normal;
 in vec4 own_tint;
 // xyz: normal times the share of the sky; w: distance to the eye's plane, m
 layout(location = 0) out vec4 surface;
-layout(location = 1)
-    out vec4 tint; // factors of the mesh's colour; a: the share of the sky past the mesh alone
+// rgb: factors of the mesh's colour; a: the share of the sky past the mesh alone
+layout(location = 1) out vec4 tint;
 
 void main()
 {

@@ -149,11 +149,13 @@ SIMD_STAGE(light_rows, Lighting)
 
 void base_mesh_light(const LaneBase *base, const LaneBaseScene *scene, int parts)
 {
-    Lighting lighting = {base,
-                         scene->shadow,
-                         light_grid_lights_skin(scene->grid) ? scene->grid : NULL,
-                         base_view(scene->draw),
-                         scene->shading == MESH_SKIN,
-                         parts};
+    Lighting lighting = {
+        .base = base,
+        .shadow = scene->shadow,
+        .grid = light_grid_lights_skin(scene->grid) ? scene->grid : NULL,
+        .view = base_view(scene->draw),
+        .skin = scene->shading == MESH_SKIN,
+        .parts = parts,
+    };
     run_light_rows(&lighting, parts);
 }

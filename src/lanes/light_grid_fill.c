@@ -33,8 +33,8 @@ static bool grow_cells(LightGridState *state, size_t cells)
 static bool grow_slots(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, active = (size_t)state->active;
-    size_t of[11];
-    for (int i = 0; i < 11; ++i) of[i] = i < 5 || i >= 9 ? state->filled_room : state->slot_room;
+    size_t of[10];
+    for (int i = 0; i < 10; ++i) of[i] = i < 5 || i == 9 ? state->filled_room : state->slot_room;
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
@@ -43,7 +43,6 @@ static bool grow_slots(LightGridState *state)
                 grow(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
                 grow(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
                 grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &&
-                grow(&state->sent, &of[10], filled, GRID_WIDE * sizeof(float)) &&
                 grow(&state->class, &of[4], filled, sizeof(int)) &&
                 grow(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&

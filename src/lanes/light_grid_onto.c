@@ -6,8 +6,19 @@
 #include <math.h>
 #include <stdlib.h>
 
+static bool make_sent(LightGridState *state)
+{
+    size_t filled = (size_t)state->filled, room = filled + filled / 4;
+    if (state->sent_room >= filled) return true;
+    free(state->sent);
+    state->sent = malloc(room * GRID_WIDE * sizeof *state->sent);
+    state->sent_room = state->sent ? room : 0;
+    return state->sent != NULL;
+}
+
 bool light_grid_make_onto(LightGridState *state)
 {
+    if (!make_sent(state)) return false;
     size_t cells = light_lattice_cells(&state->field.lattice);
     if (state->onto_room >= cells) return true;
     free(state->onto);

@@ -35,8 +35,11 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     TRY(light_field_make_scatter(&state->field, scene, state->class, state->filled, error));
     bool sky = light_scene_has_sky(scene->draw);
     state->lights_skin = scene->skin && state->field.walled;
-    if (state->lights_skin)
+    if (state->lights_skin) {
+        if (!light_grid_make_onto(state))
+            return error_set(error, RESULT_FAILED, "no memory for light of hair on skin");
         memcpy(state->sent, state->source, (size_t)state->filled * GRID_WIDE * sizeof(float));
+    }
     light_grid_sweep(state, sky, true);
     float all[3] = {0};
     light_grid_needs_more(state, all);
@@ -48,8 +51,6 @@ Result light_grid_solve(LightGrid *grid, const GridScene *scene, Error *error)
     }
     light_grid_close(state, scene->orders > 1);
     if (state->lights_skin) {
-        if (!light_grid_make_onto(state))
-            return error_set(error, RESULT_FAILED, "no memory for light of hair on skin");
         light_grid_sweep_onto(state);
         light_grid_sum_onto(state);
     }

@@ -71,7 +71,6 @@ typedef struct LightGridState {
     float *hidden;   // [active + 1][4]: mean light, and 1 if it suffices
     float *glow;     // [filled][3]: share of a cell's light that the mesh reflects, linear RGB
     float *tint;     // [filled][3]: ratio of the albedo to the kind's
-    float *sent;     // [groups][filled][GROUP_WIDE]: sum of S over all orders, if lights_skin
     int *class;      // [filled]: main tangent and kind
     float *planes;   // [groups][3][plane]: two slices, and rows
     size_t plane;    // floats
@@ -79,10 +78,11 @@ typedef struct LightGridState {
     bool closing;    // the light of further orders is extrapolated
     double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
 
-    bool lights_skin;                    // onto: the light that hair sends onto skin
+    bool lights_skin;                    // sent, onto: the light that hair sends onto skin
+    float *sent;                         // [groups][filled][GROUP_WIDE]: sum of S over all orders
     float (*onto)[ONTO_FACES][4];        // [cells]: see kernel/onto.h; [0][3]: 1 if there is light
     float (*onto_groups)[ONTO_FACES][3]; // [groups][cells]: parts of this sum
-    size_t onto_room;
+    size_t sent_room, onto_room;         // cells
 
     float eye[3]; // m, in the lattice's axes: the eye of GridPatches
     GridPatches *patches;
@@ -155,7 +155,7 @@ bool light_grid_needs_more(const LightGridState *state, float all[3]);
 // Sums the light of all orders; with `further` also of the orders after the last one.
 void light_grid_close(LightGridState *state, bool further);
 
-// Makes room for `onto`. False if memory is short.
+// Makes room for `sent` and `onto`. False if memory is short.
 bool light_grid_make_onto(LightGridState *state);
 // The weights of a group's directions for the faces of a cell.
 void light_grid_find_faces(int group, float face[ONTO_FACES][GRID_LANES]);

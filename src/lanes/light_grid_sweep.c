@@ -23,7 +23,7 @@ typedef struct GroupWay {
     float sky[GROUP_WIDE];
     ptrdiff_t stride[3], step[3]; // of slots and of walls, along `main` and the axes across
     const float *walls[3];        // transmittance of the mesh along these axes; NULL without a mesh
-    float face[ONTO_FACES][GRID_LANES]; // weights of the directions on the faces of a cell
+    float face[ONTO_FACES][GRID_LANES]; // onto skin: weights of the directions on a cell's faces
 } GroupWay;
 
 static void find_strides(const LightGridState *state, GroupWay *way)
@@ -58,7 +58,6 @@ static void find_way(const Sweep *sweep, int group, GroupWay *way)
     memset(way->sky, 0, sizeof way->sky);
     if (sweep->sky)
         memcpy(way->sky, sweep->state->field.around + (size_t)group * GROUP_WIDE, sizeof way->sky);
-    light_grid_find_faces(group, way->face);
     find_strides(sweep->state, way);
 }
 
@@ -287,6 +286,7 @@ SIMD_INLINE void sweep_groups_onto(const Sweep *sweep, int part)
     for (int group = part; group < ORDINATE_GROUPS; group += sweep->parts) {
         GroupWay way;
         find_way(sweep, group, &way);
+        light_grid_find_faces(group, way.face);
         sweep_slices(sweep, &way, group, true, true);
     }
 }

@@ -14,8 +14,8 @@ enum {
 // How a pass is built: the values of its file's macros, and what a lane processes.
 typedef struct PassShape {
     const char *file;
-    int items, shadow, wide, beside, walled, onto,
-        group; // group 0: a strand for each lane, -1: a cell
+    int items, shadow, wide, beside, walled, onto;
+    int group; // 0: a strand for each lane, -1: a cell
     bool hair; // has variants for hair
 } PassShape;
 

@@ -26,6 +26,7 @@ void light_passes_destroy(LightPasses *passes)
         &passes->planes,
         &passes->depth,
         &passes->source,
+        &passes->sent,
         &passes->order,
         &passes->total,
         &passes->light,
@@ -253,7 +254,8 @@ static Result make_room(LightPasses *passes, Error *error)
     } rooms[] = {
         {&passes->cells, passes->active, sizeof(LightCell), 0},
         {&passes->depth, passes->filled, ORDINATES * 4, 0},
-        {&passes->source, (passes->lights_skin ? 2 : 1) * passes->active, GRID_WIDE * 4, 0},
+        {&passes->source, passes->active, GRID_WIDE * 4, 0},
+        {&passes->sent, passes->lights_skin ? passes->active : 0, GRID_WIDE * 4, 0},
         {&passes->order, passes->active, GRID_WIDE * 4, 0},
         {&passes->total, passes->active, GRID_WIDE * 4, 0},
         {&passes->light, passes->active, ORDINATES * 16, GL_RGBA32F},
@@ -338,6 +340,7 @@ static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCast
 
 static Result run_sweep(LightPasses *passes, int number, bool sky, Error *error)
 {
+    gpu_buffer_bind_storage(&passes->total, BIND_LIGHT_TOTAL_OUT);
     TRY(light_pass_use(&passes->programs,
                        passes->field.walled ? LIGHT_PASS_SWEEP_WALLED : LIGHT_PASS_SWEEP, 0,
                        error));
@@ -353,9 +356,10 @@ static Result sweep_orders(LightPasses *passes, const GridScene *scene, Error *e
 {
     gpu_buffer_bind_storage(&passes->planes, BIND_LIGHT_PLANES_OUT);
     gpu_buffer_bind_storage(&passes->order, BIND_LIGHT_ORDER_OUT);
-    gpu_buffer_bind_storage(&passes->total, BIND_LIGHT_TOTAL_OUT);
+    if (passes->lights_skin) gpu_buffer_clear(&passes->sent, 0);
     TRY(run_sweep(passes, 0, light_scene_has_sky(scene->draw), error));
     for (int order = 1; order <= scene->orders; ++order) {
+        if (passes->lights_skin) gpu_buffer_bind_storage(&passes->sent, BIND_LIGHT_SENT_OUT);
         TRY(light_pass_use(&passes->programs, LIGHT_PASS_SCATTER, 0, error));
         light_pass_run_cells(&passes->programs, LIGHT_PASS_SCATTER, passes->filled);
         TRY(run_sweep(passes, order, false, error));
@@ -381,6 +385,7 @@ static Result light_skin(LightPasses *passes, Error *error)
                            (int64_t)cells * ONTO_FACES * 16, GL_RGBA32F, error));
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_SWEEP_ONTO, 0, error));
     gpu_buffer_bind_storage(&passes->onto, BIND_LIGHT_ONTO_OUT);
+    gpu_buffer_bind_storage(&passes->sent, BIND_LIGHT_SENT_OUT);
     gpu_buffer_bind_storage(&passes->planes, BIND_LIGHT_PLANES_OUT);
     glUniform2i(0, 0, 0);
     glDispatchCompute(ORDINATES, 1, 1);

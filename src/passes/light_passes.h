@@ -28,6 +28,7 @@ typedef struct LightPasses {
     LateRead box_read, counts_read;
     GpuBuffer box, slots, cells, state, sums, planes, depth, source, order, total, light;
     GpuBuffer tables, walls;
+    GpuBuffer sent;  // what hair has sent in all orders but the last, for skin
     GpuBuffer onto;  // the light of hair by ordinate and cell, for skin
     GpuBuffer faces; // [cells][ONTO_FACES] vec4: this light on surfaces (kernel/onto.h)
     bool lights_skin;

@@ -267,6 +267,9 @@ static void expect_same_skin(const Case *of, const float (*c)[ONTO_FACES][4])
     const LightPasses *passes = &stage_passes()->scatter.passes;
     assert_true((c != NULL) == of->mesh && passes->lights_skin == of->mesh);
     if (!c) return;
+    // Skin does not lower the number of cells that fit into a driver's largest buffer.
+    assert_true(passes->source.size <= passes->light.size &&
+                passes->sent.size <= passes->light.size);
     const float(*shaders)[ONTO_FACES][4] = gpu_buffer_read(&passes->faces);
     const size_t cells = light_lattice_cells(&passes->field.lattice);
     double off = 0, all = 0;
