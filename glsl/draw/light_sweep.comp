@@ -101,6 +101,7 @@ void cross_onto(int at_cell, inout vec3 light, int slot)
         mean = all + (light - all) * cell_mean_share(tau, left);
         light = all + (light - all) * left;
     }
+    mean = min(mean, vec3(65504.0)); // the largest half
     onto[d * int(light_params.count.w) + at_cell] =
         uvec2(packHalf2x16(mean.rg), packHalf2x16(vec2(mean.b, 0.0)));
 }

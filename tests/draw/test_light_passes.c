@@ -319,9 +319,39 @@ static void c_and_shaders_find_the_same_light(void **state)
     }
 }
 
+// The brightest lamp that a scene may have, among hair: the light on skin is beyond the range of
+// halves.
+static void bright_light_on_skin_is_finite(void **state)
+{
+    (void)state;
+    const Case bright = {.name = "a bright lamp among hair, a mesh",
+                         .lights = {{.kind = LIGHT_POINT,
+                                     .position = {-10, 4, 25},
+                                     .distance = 1000,
+                                     .color = {1, 1, 1},
+                                     .intensity = 1e4f}},
+                         .light_count = 1,
+                         .scatter = SCATTER_GRID,
+                         .mesh = true};
+    add_sections(&bright);
+    draw(&bright, RASTER_COMPUTE);
+    const LightPasses *passes = &stage_passes()->scatter.passes;
+    const size_t count = light_lattice_cells(&passes->field.lattice) * ONTO_FACES * 4;
+    float *shown = gpu_buffer_read(&passes->faces), most = 0;
+    assert_non_null(shown);
+    for (size_t i = 0; i < count; ++i) {
+        if (!isfinite(shown[i])) fail_msg("%zu: %g", i, (double)shown[i]);
+        most = fmaxf(most, shown[i]);
+    }
+    if (!(most > 6e4f)) fail_msg("at most %g", (double)most);
+    free(shown);
+    studio_clear(&studio);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        CLAIM(bright_light_on_skin_is_finite),
         CLAIM(c_and_shaders_find_the_same_light),
     };
     return stage_run_one(tests, RASTER_BLOCKS);
