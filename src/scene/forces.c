@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/forces.h"
+#include "base/double3.h"
+#include "scene/schedule.h"
 
 #include <cglm/cglm.h>
 
@@ -64,6 +66,23 @@ void forces_evaluate(Forces *forces, const Scene *scene, double time)
     track_evaluate_or(&scene->wind, scene->run.wind, begun, main);
     glm_vec3_scale(main, (float)(1 + (double)scene->run.gust * gust_at(&scene->run, time)), main);
     if (glm_vec3_norm2(main) > 0) spread_wind(forces, main, scene->run.wind_spread);
+}
+
+static double greatest_length(const RunParams *run, const Track *track, const float constant[3])
+{
+    if (track_is_given(track))
+        return track_extremes(track, run->frames + 1, schedule_frame_time(run, run->frames)).length;
+    Double3 vector;
+    double3_from_float(constant, vector);
+    return double3_length(vector);
+}
+
+ForcesMost forces_most(const Scene *scene)
+{
+    const RunParams *run = &scene->run;
+    double wind = greatest_length(run, &scene->wind, run->wind);
+    return (ForcesMost){.gravity = greatest_length(run, &scene->gravity, run->gravity),
+                        .wind = (1 + (double)run->gust) * wind};
 }
 
 bool forces_are_constant(const Scene *scene)

@@ -18,5 +18,11 @@ typedef struct Forces {
 // gust) times the mean.
 void forces_evaluate(Forces *forces, const Scene *scene, double time);
 
+// The greatest gravity (m/s^2) and main wind (m/s, at the peak of a gust) of the whole run.
+typedef struct ForcesMost {
+    double gravity, wind;
+} ForcesMost;
+ForcesMost forces_most(const Scene *scene);
+
 // True if neither gravity nor wind changes over time.
 bool forces_are_constant(const Scene *scene);

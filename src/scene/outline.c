@@ -294,18 +294,10 @@ static float distance_to_see(const Outline *outline, const Axes *axes, const flo
 
 static float narrowest_fov(const Scene *scene)
 {
-    const Track *track = &scene->fov;
-    if (!track_is_given(track)) return glm_rad(scene->run.fov);
-    float fov = 180, value = 0;
-    int frames = scene->run.frames;
-    for (int i = 0; i < track_sample_count(track, frames); ++i) {
-        track_evaluate(
-            track,
-            track_sample_time(track, i, frames, schedule_frame_time(&scene->run, frames - 1)),
-            &value);
-        fov = fminf(fov, value);
-    }
-    return glm_rad(fov);
+    const RunParams *run = &scene->run;
+    if (!track_is_given(&scene->fov)) return glm_rad(run->fov);
+    double last = schedule_frame_time(run, run->frames - 1);
+    return glm_rad(track_extremes(&scene->fov, run->frames, last).least[0]);
 }
 
 // The outline that the automatic camera frames.

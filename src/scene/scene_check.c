@@ -130,11 +130,27 @@ static Result check_tracks(const Scene *scene, double time, Error *error)
     return track_check(&scene->fov, "camera.fov", time, error);
 }
 
+static bool has_formulas(const Scene *scene)
+{
+    const Track *tracks[] = {&scene->gravity, &scene->wind, &scene->eye, &scene->target,
+                             &scene->fov};
+    bool any = false;
+    for (size_t i = 0; i < sizeof tracks / sizeof *tracks; ++i) any |= track_has_formula(tracks[i]);
+    for (uint32_t b = 0; b < scene->body_count; ++b)
+        any |= track_has_formula(&scene->bodies[b].head.translation) ||
+               track_has_formula(&scene->bodies[b].head.rotation);
+    for (uint32_t i = 0; i < scene->section_count; ++i)
+        for (uint32_t k = 0; k < scene->sections[i].tracks.count; ++k)
+            any |= track_has_formula(&scene->sections[i].tracks.list[k].track);
+    return any;
+}
+
 // Evaluates all formulas at the times of all frames, at most a million, so that errors are found
 // before anything runs.
 static Result check_formulas(const Scene *scene, Error *error)
 {
     const int most = 1000000;
+    if (!has_formulas(scene)) return RESULT_OK;
     int frames = scene->run.frames < most ? scene->run.frames : most;
     for (int frame = 0; frame < frames; ++frame)
         TRY(check_tracks(scene, schedule_frame_time(&scene->run, frame), error));

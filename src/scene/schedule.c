@@ -25,11 +25,9 @@ double schedule_period_rate(const RunParams *run)
 
 SectionParams schedule_greatest_params(const RunParams *run, const Section *section)
 {
-    const int most = 10000;
-    int frames = run->frames < most ? run->frames : most;
     SectionParams params = section->params;
-    section_tracks_greatest(&section->tracks, schedule_frame_time(run, run->frames), frames + 1,
-                            &params);
+    section_tracks_greatest(&section->tracks, schedule_frame_time(run, run->frames),
+                            run->frames + 1, &params);
     return params;
 }
 

@@ -101,13 +101,7 @@ void section_tracks_greatest(const SectionTracks *tracks, double last, int count
 {
     for (uint32_t i = 0; i < tracks->count; ++i) {
         const Track *track = &tracks->list[i].track;
-        const ParamInfo *info = tracks->list[i].info;
-        float most[3] = {-INFINITY, -INFINITY, -INFINITY}, value[3] = {0};
-        for (int t = 0; t < track_sample_count(track, count); ++t) {
-            track_evaluate(track, track_sample_time(track, t, count, last), value);
-            for (uint32_t k = 0; k < width_of(info); ++k) most[k] = fmaxf(most[k], value[k]);
-        }
-        put_value(info, params, most);
+        put_value(tracks->list[i].info, params, track_extremes(track, count, last).greatest);
     }
 }
 

@@ -31,8 +31,7 @@ Result section_tracks_copy(SectionTracks *to, const SectionTracks *from, Error *
 // range.
 void section_tracks_apply(const SectionTracks *tracks, double time, SectionParams *params);
 
-// Sets each parameter to the greatest value that it has at one of `count` times from 0 to `last`
-// (s), or at a key.
+// Sets each parameter to the greatest value of its track (track_extremes).
 void section_tracks_greatest(const SectionTracks *tracks, double last, int count,
                              SectionParams *params);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene/track.h"
 
+#include "base/double3.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,9 +14,14 @@ Result track_set_formula(Track *track, uint32_t i, const char *text, const Track
     return formula_create(&track->formula[i], text, error);
 }
 
+bool track_has_formula(const Track *track)
+{
+    return track->formula[0].text;
+}
+
 bool track_is_given(const Track *track)
 {
-    return track->keys.count > 0 || track->formula[0].text;
+    return track->keys.count > 0 || track_has_formula(track);
 }
 
 bool track_is_still(const Track *track)
@@ -56,14 +63,28 @@ Result track_check(const Track *track, const char *name, double time, Error *err
     return RESULT_OK;
 }
 
-int track_sample_count(const Track *track, int count)
-{
-    return track->keys.count ? (int)track->keys.count : count;
-}
-
-double track_sample_time(const Track *track, int sample, int count, double last)
+static double sample_time(const Track *track, int sample, int count, double last)
 {
     return track->keys.count ? track->keys.time[sample] : last * sample / fmax(count - 1, 1);
+}
+
+TrackExtremes track_extremes(const Track *track, int count, double last)
+{
+    const int most = 10000, samples = count < most ? count : most,
+              times = track->keys.count ? (int)track->keys.count : samples;
+    TrackExtremes found = {.length = 0};
+    for (int i = 0; i < times; ++i) {
+        float value[TRACK_MAX_WIDTH] = {0};
+        track_evaluate(track, sample_time(track, i, samples, last), value);
+        for (int k = 0; k < TRACK_MAX_WIDTH; ++k) {
+            found.least[k] = i ? fminf(found.least[k], value[k]) : value[k];
+            found.greatest[k] = i ? fmaxf(found.greatest[k], value[k]) : value[k];
+        }
+        Double3 vector;
+        double3_from_float(value, vector);
+        found.length = fmax(found.length, double3_length(vector));
+    }
+    return found;
 }
 
 Result track_copy(Track *to, const Track *from, Error *error)

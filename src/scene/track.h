@@ -27,6 +27,7 @@ Result track_set_formula(Track *track, uint32_t i, const char *text, const Track
                          Error *error);
 
 bool track_is_given(const Track *track);
+bool track_has_formula(const Track *track);
 
 // Whether the value is the same at all times. Formulas are not analysed: a track with formulas is
 // taken to change.
@@ -43,11 +44,16 @@ void track_evaluate_or(const Track *track, const float constant[3], double time,
 // `name` and the value.
 Result track_check(const Track *track, const char *name, double time, Error *error);
 
-// Times (s) at which to look for the extremes of a track: those of its keys, which are enough
-// because tracks do not overshoot between keys, or `count` even times from 0 to `last` for
-// formulas.
-int track_sample_count(const Track *track, int count);
-double track_sample_time(const Track *track, int sample, int count, double last);
+// The least and the greatest value of each component, and the greatest length.
+typedef struct TrackExtremes {
+    float least[TRACK_MAX_WIDTH], greatest[TRACK_MAX_WIDTH];
+    double length;
+} TrackExtremes;
+
+// The extremes of a given track: at its keys, which is enough because tracks do not overshoot
+// between keys. For formulas at `count` (at least 1) even times from 0 to `last` (s), at most
+// 10,000. Callers pass the times of frames, so what a formula does between frames is missed.
+TrackExtremes track_extremes(const Track *track, int count, double last);
 
 // RESULT_FAILED when memory is short. `to` must be zeroed.
 Result track_copy(Track *to, const Track *from, Error *error);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "sim/simulation.h"
-#include "scene/forces.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -145,42 +144,23 @@ double simulation_stability(const Strands *strands, double g, double dt)
     return dt * sqrt(g * most);
 }
 
-static double norm(const float v[3])
+double simulation_acceleration(const ForcesMost *forces, const SectionParams *params)
 {
-    return sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] +
-                (double)v[2] * (double)v[2]);
-}
-
-static double greatest(const RunParams *run, const Track *track, const float constant[3])
-{
-    if (!track_is_given(track)) return norm(constant);
-    double most = 0, last = schedule_frame_time(run, run->frames);
-    for (int i = 0; i < track_sample_count(track, run->frames + 1); ++i) {
-        float value[3] = {0};
-        track_evaluate(track, track_sample_time(track, i, run->frames + 1, last), value);
-        most = fmax(most, norm(value));
-    }
-    return most;
-}
-
-double simulation_acceleration(const Scene *scene, const SectionParams *params)
-{
-    const RunParams *run = &scene->run;
-    return greatest(run, &scene->gravity, run->gravity) +
-           (double)params->drag * (1 + (double)run->gust) * greatest(run, &scene->wind, run->wind);
+    return forces->gravity + (double)params->drag * forces->wind;
 }
 
 Result simulation_choose_substeps(int *substeps, const Scene *scene, const Strands *strands,
                                   Error *error)
 {
     const double most_steps = params_find("substeps")->maximum;
+    const ForcesMost forces = forces_most(scene);
     *substeps = 1;
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         const Section *section = &scene->sections[i];
         const SectionParams params = schedule_greatest_params(&scene->run, section);
         double limit = solver_most_stability(&params);
         if (!(limit > 0)) continue;
-        double sigma = simulation_stability(&strands[i], simulation_acceleration(scene, &params),
+        double sigma = simulation_stability(&strands[i], simulation_acceleration(&forces, &params),
                                             1 / schedule_period_rate(&scene->run));
         double steps = ceil(sigma / limit);
         if (steps > most_steps)

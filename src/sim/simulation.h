@@ -9,6 +9,7 @@
 // of them.)
 #pragma once
 
+#include "scene/forces.h"
 #include "scene/scene.h"
 #include "scene/schedule.h"
 #include "sim/bound.h"
@@ -62,10 +63,9 @@ typedef struct Simulation {
 // acceleration of g m/s2 along the strand. 0 without strands or acceleration.
 double simulation_stability(const Strands *strands, double g, double dt);
 
-// The greatest acceleration by gravity and wind in the scene, m/s2, over all keyframes. Wind
-// counts at the peak of a gust, multiplied by the section's drag. The head's motion is not
-// included.
-double simulation_acceleration(const Scene *scene, const SectionParams *params);
+// The greatest acceleration of a section by the scene's forces, m/s2: wind counts multiplied by the
+// section's drag. The head's motion is not included.
+double simulation_acceleration(const ForcesMost *forces, const SectionParams *params);
 
 // The smallest number of steps a period (schedule_period_rate) for which the stability number of
 // each section stays within its solver's limit (SolverType.most_stability). `strands`: one element

@@ -211,14 +211,16 @@ static void automatic_substeps_are_the_fewest_stable_ones(void **state)
     run->substeps = (AutoInt){.automatic = true};
     run->fps = 24;
     run->gravity[1] = -200;
-    double g = simulation_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
+    ForcesMost forces = forces_most(&fixture.scene);
+    double g = simulation_acceleration(&forces, &fixture.scene.sections[0].params);
     assert_true(fabs(g - (200 + 3 * 0.5 * 1.5)) < 1e-6); // drag 3/s, wind 0.5 m/s, half of it gusts
     for (uint32_t i = 0; i < 3; ++i) // the wind's greatest speed in the frames' time counts
         assert_int_equal(track_set_formula(&fixture.scene.wind, i, i == 1 ? "4*sin(pi*t)" : "0",
                                            &(TrackRange){-100, 100, 1}, NULL),
                          RESULT_OK);
     run->frames = 25;
-    double windy = simulation_acceleration(&fixture.scene, &fixture.scene.sections[0].params);
+    forces = forces_most(&fixture.scene);
+    double windy = simulation_acceleration(&forces, &fixture.scene.sections[0].params);
     assert_true(fabs(windy - (200 + 3 * 4 * 1.5)) < 1e-4);
     track_destroy(&fixture.scene.wind);
     simulation_fixture_start(&fixture);
