@@ -282,9 +282,8 @@ Result render_help(const char *topic, FILE *stream, Error *error)
         .text =
             "Every option and key that takes a color also takes one of these names. They stand "
             "for the sRGB values beside them. If a name has two values, --color and --tip-color "
-            "use "
-            "the second one, the visible color of a whole head of such hair; all other options, "
-            "and --transmission, use the first one, the color of CSS.",
+            "use the second one, the visible color of a whole head of such hair; all others, "
+            "--transmission among them, use the first one, the color of CSS.",
         .entries = (const char *const(*)[3])texts->colors,
     };
     const OptionsProgram program = {
