@@ -458,7 +458,7 @@ static void set_scales(TractrixScene *scene, uint32_t body, TractrixSimulation *
     uint32_t *triangle = malloc(*count * sizeof *triangle);
     for (uint32_t s = 0, v = 0, at = 0; s < guides.strand_count; at += guides.sizes[s++])
         for (int k = 0; k < 3; ++k, ++v) {
-            const float *root = &guides.position[4 * at];
+            const float *root = guides.position + (size_t)4 * at;
             triangle[v] = v;
             position[v][0] = root[0] + AROUND[k][0];
             position[v][1] = root[1];
