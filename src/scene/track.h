@@ -50,9 +50,10 @@ typedef struct TrackExtremes {
     double length;
 } TrackExtremes;
 
-// The extremes of a given track: at its keys, which is enough because tracks do not overshoot
-// between keys. For formulas at `count` (at least 1) even times from 0 to `last` (s), at most
-// 10,000. Callers pass the times of frames, so what a formula does between frames is missed.
+// The extremes of a given track, at its keys: components do not overshoot between keys. The length
+// of a vector can, by at most sqrt(3) times, where keys are smooth and components change at
+// different times. For formulas at `count` (at least 1) even times from 0 to `last` (s), at
+// most 10,000. Callers pass the times of frames, so what a formula does between frames is missed.
 TrackExtremes track_extremes(const Track *track, int count, double last);
 
 // RESULT_FAILED when memory is short. `to` must be zeroed.

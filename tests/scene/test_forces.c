@@ -143,14 +143,20 @@ static void gusts_stay_within_their_share_and_vary(void **state)
     scene_destroy(&scene);
 }
 
+// Wind that is the same everywhere and has no gusts.
+static void make_even_wind(Scene *scene)
+{
+    make_scene(scene, 9, 9, 9);
+    scene->run.gust = 0;
+    scene->run.wind_spread = 0;
+}
+
 static void keyframes_win_over_constants(void **state)
 {
     (void)state;
     Scene scene;
     Forces forces;
-    make_scene(&scene, 9, 9, 9);
-    scene.run.gust = 0;
-    scene.run.wind_spread = 0;
+    make_even_wind(&scene);
     scene.wind.keys.interpolation = INTERPOLATION_LINEAR;
     assert_int_equal(keyframes_append(&scene.wind.keys, 0, (const float[]){0, 0, 0}, 3, NULL),
                      RESULT_OK);
@@ -169,9 +175,7 @@ static void formulas_blow_with_the_time(void **state)
     (void)state;
     Scene scene;
     Forces forces;
-    make_scene(&scene, 9, 9, 9);
-    scene.run.gust = 0;
-    scene.run.wind_spread = 0;
+    make_even_wind(&scene);
     assert_true(forces_are_constant(&scene));
     const char *const texts[] = {"2*t", "0", "-1"};
     for (uint32_t i = 0; i < 3; ++i)
