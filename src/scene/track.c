@@ -54,7 +54,7 @@ Result track_check(const Track *track, const char *name, double time, Error *err
     for (int i = 0; i < TRACK_MAX_WIDTH && track->formula[i].text; ++i) {
         double number = formula_evaluate(&track->formula[i], time);
         if (number >= range->minimum && number <= range->maximum) continue;
-        char index[8] = "";
+        char index[16] = "";
         if (track->formula[1].text) snprintf(index, sizeof index, "[%d]", i);
         return error_set(error, RESULT_BAD_INPUT,
                          "%s%s: '%.100s' is %g at t = %.9g, expected %.10g to %.10g", name, index,
