@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The light that hair in each cell of the light grid scatters from the last order, by its main
-// tangent. A work group for each cell, a lane for each ordinate.
+// tangent, and the light that the mesh reflects there. A work group for each cell, a lane for each
+// ordinate.
 #include "draw/light.h"
 #include "draw/light.glsl"
+#include "draw/light_walls.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -15,29 +17,42 @@ layout(std430, binding = BIND_LIGHT_SENT_OUT) buffer Sent { float sent[]; };
 
 shared vec3 from[LIGHT_ORDINATES];
 
+// The mesh reflects its colour's share of the light equally in all directions: the mean over those
+// in which the mesh itself does not stand in the way.
+void reflect_at(int slot)
+{
+    ivec3 place = cell_place(cell[slot].places.x);
+    vec3 sum = vec3(0.0);
+    float count = 0.0;
+    for (int group = 0; group < LIGHT_ORDINATES / LIGHT_LANES; ++group) {
+        if (!lets_in(place, group)) continue;
+        for (int l = 0; l < LIGHT_LANES; ++l) sum += from[group * LIGHT_LANES + l];
+        count += float(LIGHT_LANES);
+    }
+    cell[slot].glow.rgb = draw_params.mesh_color.rgb * sum / max(count, 1.0);
+}
+
 void main()
 {
     const int square = LIGHT_ORDINATES * LIGHT_ORDINATES;
     int slot = group_index(), d = int(gl_LocalInvocationID.x);
-    if (slot >= int(state.filled) || state.done != 0u) return;
+    if (slot >= int(state.filled + state.beside) || state.done != 0u) return;
     int at = ordinate_address(min(d, LIGHT_ORDINATES - 1), slot);
     if (d < LIGHT_ORDINATES) from[d] = vec3(order[at], order[at + 1], order[at + 2]);
     memoryBarrierShared();
     barrier();
-    if (d >= LIGHT_ORDINATES) return;
+    if (d == 0 && light_params.walled != 0u) reflect_at(slot);
+    if (d >= LIGHT_ORDINATES || slot >= int(state.filled)) return;
     int table = cell[slot].places.y * 3 * square + d;
-    vec3 sum = vec3(0.0), mean = vec3(0.0);
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < LIGHT_ORDINATES; ++i) {
         int row = table + i * LIGHT_ORDINATES;
         sum += from[i] * vec3(texelFetch(scatter, row).x, texelFetch(scatter, row + square).x,
                               texelFetch(scatter, row + 2 * square).x);
-        mean += from[i];
     }
     sum *= cell[slot].tint.rgb;
     for (int k = 0; k < 3; ++k) {
         if (light_params.walled == 2u) sent[at + k] += source[at + k];
         source[at + k] = sum[k];
     }
-    // The mesh reflects its colour's share of the light equally in all directions.
-    if (d == 0) cell[slot].glow.rgb = draw_params.mesh_color.rgb * mean / float(LIGHT_ORDINATES);
 }

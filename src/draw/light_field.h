@@ -78,6 +78,24 @@ static inline const float *light_field_walls(const LightField *field, int axis)
     return field->walled ? field->walls + (size_t)axis * z * ((size_t)n[2] + 2) + z + y + 1 : NULL;
 }
 
+// Whether the mesh lets light into this cell along a direction of the group (ordinates.h), and
+// whether the cell is next to the mesh: it does not let it in along all of them.
+static inline bool light_field_lets_in(const LightField *field, const int cell[3], int group)
+{
+    const int *n = field->lattice.count;
+    const size_t step[3] = {1, (size_t)n[0] + 2, ((size_t)n[0] + 2) * ((size_t)n[1] + 2)};
+    size_t at = (size_t)cell[0] + step[1] * (size_t)cell[1] + step[2] * (size_t)cell[2];
+    int axis = group / 2;
+    return light_field_walls(field, axis)[at + (group % 2 ? 0 : step[axis])] > 0;
+}
+static inline bool light_field_is_beside_mesh(const LightField *field, const int cell[3])
+{
+    bool all = true;
+    for (int group = 0; group < ORDINATE_GROUPS && field->walled; ++group)
+        all = all && light_field_lets_in(field, cell, group);
+    return !all;
+}
+
 // The group size: one strand of each group of this many is used and represents them all.
 static inline uint light_field_step(const GridScene *scene)
 {

@@ -8,7 +8,8 @@
 #include <string.h>
 
 // Turns counts of items into the index where the items of each part and cell begin. Gives slots to
-// cells with hair, then to their neighbours, which interpolation between cells reads.
+// cells with hair, then to their neighbours, which interpolation between cells reads, and to cells
+// next to the mesh, which reflects light there.
 void light_grid_make_slots(LightGridState *state)
 {
     const int *n = state->field.lattice.count;
@@ -37,6 +38,12 @@ void light_grid_make_slots(LightGridState *state)
             state->slot[other] = state->active;
             state->cell_of[state->active++] = other;
         }
+    }
+    for (int c = 0; c < (int)cells && state->field.walled; ++c) {
+        const int at[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+        if (state->slot[c] >= 0 || !light_field_is_beside_mesh(&state->field, at)) continue;
+        state->slot[c] = state->active;
+        state->cell_of[state->active++] = c;
     }
 }
 

@@ -34,7 +34,7 @@ static bool grow_slots(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, active = (size_t)state->active;
     size_t of[10];
-    for (int i = 0; i < 10; ++i) of[i] = i < 5 || i == 9 ? state->filled_room : state->slot_room;
+    for (int i = 0; i < 10; ++i) of[i] = i < 5 ? state->filled_room : state->slot_room;
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
@@ -42,7 +42,7 @@ static bool grow_slots(LightGridState *state)
                 grow(&state->passage, &of[1], filled, GRID_WIDE * sizeof(float)) &&
                 grow(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
                 grow(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
-                grow(&state->glow, &of[9], filled, 3 * sizeof(float)) &&
+                grow(&state->glow, &of[9], active, 3 * sizeof(float)) &&
                 grow(&state->class, &of[4], filled, sizeof(int)) &&
                 grow(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
                 grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
@@ -82,6 +82,7 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     light_grid_place(state, scene, true);
     THEN(result, light_field_make_first(&state->field, scene, error));
     if (result != RESULT_OK) return result;
+    memset(state->glow, 0, (size_t)state->active * 3 * sizeof *state->glow);
     if (!light_grid_fill_cells(state, scene)) return RESULT_FAILED;
     release_items(state);
     return RESULT_OK;

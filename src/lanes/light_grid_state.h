@@ -69,7 +69,7 @@ typedef struct LightGridState {
     float *sum;      // [groups][active][GROUP_WIDE]: sum of L over all orders so far
     float *light;    // [active + 1][GRID_WIDE]: L of all orders and of the environment
     float *hidden;   // [active + 1][4]: mean light, and 1 if it suffices
-    float *glow;     // [filled][3]: share of a cell's light that the mesh reflects, linear RGB
+    float *glow;     // [active][3]: light that the mesh reflects in a cell, linear RGB
     float *tint;     // [filled][3]: ratio of the albedo to the kind's
     int *class;      // [filled]: main tangent and kind
     float *planes;   // [groups][3][plane]: two slices, and rows
