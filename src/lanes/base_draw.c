@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/base.h"
 
+#include "base/room.h"
+
 #include "lanes/base_floor.h"
 #include "lanes/base_mesh.h"
 
@@ -42,15 +44,6 @@ static void find_part(const DrawParams *draw, const int box[4], int wider, int p
         if (part[k + 2] < part[k]) part[k + 2] = part[k];
 }
 
-// Replaces an array by a new one without copying its content.
-static bool renew(void *memory, size_t bytes)
-{
-    void **pointer = memory;
-    free(*pointer);
-    *pointer = malloc(bytes);
-    return *pointer != NULL;
-}
-
 static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error)
 {
     int mesh[4] = {0}, all[4];
@@ -61,14 +54,11 @@ static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error
     base->low[1] = mesh[1];
     size_t lit = 3 * (size_t)base->surface.pitch * (size_t)base->surface.height,
            count = (size_t)(all[2] - all[0]) * (size_t)(all[3] - all[1]);
-    bool good = true;
-    if (base->lit_room < lit)
-        good = renew(&base->lit, lit * sizeof *base->lit), base->lit_room = good ? lit : 0;
-    if (good && base->room < count) {
-        good = renew(&base->light, count * sizeof *base->light) &&
-               renew(&base->depth, count * sizeof *base->depth);
-        base->room = good ? count : 0;
-    }
+    size_t room = base->room;
+    bool good = room_make(&base->lit, &base->lit_room, lit, sizeof *base->lit) &&
+                room_make(&base->light, &room, count, sizeof *base->light) &&
+                room_make(&base->depth, &base->room, count, sizeof *base->depth);
+    if (!good) base->room = 0;
     base->shown = (BlockBase){.x = all[0],
                               .y = all[1],
                               .width = all[2] - all[0],

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/bins.h"
 
+#include "base/room.h"
+
 #include "glsl/common/shared_math.h"
 
 #include <math.h>
@@ -108,11 +110,8 @@ static void find_places(Bins *bins, int parts)
 static Result make_room(Bins *bins, size_t count, Error *error)
 {
     if (bins->pair_room >= count) return RESULT_OK;
-    free(bins->pairs);
-    size_t room = count + count / 4;
-    bins->pairs = malloc(room * sizeof *bins->pairs);
-    bins->pair_room = bins->pairs ? room : 0;
-    if (bins->pairs) return RESULT_OK;
+    if (room_make(&bins->pairs, &bins->pair_room, count + count / 4, sizeof *bins->pairs))
+        return RESULT_OK;
     return error_set(error, RESULT_FAILED, "no memory to list %zu ribbons", count);
 }
 

@@ -2,6 +2,8 @@
 // Finds the cells of a light grid that contain hair, step by step, and allocates memory for them.
 #include "lanes/light_grid_state.h"
 
+#include "base/room.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,23 +11,13 @@ enum { KEPT_ITEM_BYTES = 32 << 20 };
 
 // --- Memory.
 
-static bool grow(void *array, size_t *room, size_t count, size_t size)
-{
-    void **mine = array;
-    if (*room >= count) return true;
-    free(*mine);
-    *mine = malloc(count * size);
-    *room = *mine ? count : 0;
-    return *mine != NULL;
-}
-
 static bool grow_cells(LightGridState *state, size_t cells)
 {
     size_t room[3] = {state->cell_room, state->cell_room, state->cell_room};
-    bool good = grow(&state->slot, &room[0], cells, sizeof *state->slot) &&
-                grow(&state->first_item, &room[1], (size_t)state->parts * cells,
-                     sizeof *state->first_item) &&
-                grow(&state->cell_of, &room[2], cells, sizeof *state->cell_of);
+    bool good = room_make(&state->slot, &room[0], cells, sizeof *state->slot) &&
+                room_make(&state->first_item, &room[1], (size_t)state->parts * cells,
+                          sizeof *state->first_item) &&
+                room_make(&state->cell_of, &room[2], cells, sizeof *state->cell_of);
     state->cell_room = good ? room[0] : 0;
     return good;
 }
@@ -38,16 +30,16 @@ static bool grow_slots(LightGridState *state)
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
-    bool good = grow(&state->depth, &of[0], filled, ORDINATES * sizeof(float)) &&
-                grow(&state->passage, &of[1], filled, GRID_WIDE * sizeof(float)) &&
-                grow(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
-                grow(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
-                grow(&state->glow, &of[9], active, 3 * sizeof(float)) &&
-                grow(&state->class, &of[4], filled, sizeof(int)) &&
-                grow(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
-                grow(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
-                grow(&state->light, &of[7], active + 1, GRID_WIDE * sizeof(float)) &&
-                grow(&state->hidden, &of[8], active + 1, 4 * sizeof(float));
+    bool good = room_make(&state->depth, &of[0], filled, ORDINATES * sizeof(float)) &&
+                room_make(&state->passage, &of[1], filled, GRID_WIDE * sizeof(float)) &&
+                room_make(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
+                room_make(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
+                room_make(&state->glow, &of[9], active, 3 * sizeof(float)) &&
+                room_make(&state->class, &of[4], filled, sizeof(int)) &&
+                room_make(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
+                room_make(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
+                room_make(&state->light, &of[7], active + 1, GRID_WIDE * sizeof(float)) &&
+                room_make(&state->hidden, &of[8], active + 1, 4 * sizeof(float));
     state->filled_room = good ? of[0] : 0;
     state->slot_room = good ? of[6] : 0;
     return good;
@@ -75,8 +67,8 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     light_grid_place(state, scene, false);
     light_grid_make_slots(state);
     if (!light_grid_find_spans(state) ||
-        !grow(&state->items, &state->item_room,
-              (size_t)state->item_count * (size_t)state->item_words, sizeof *state->items) ||
+        !room_make(&state->items, &state->item_room,
+                   (size_t)state->item_count * (size_t)state->item_words, sizeof *state->items) ||
         !grow_slots(state))
         return RESULT_FAILED;
     light_grid_place(state, scene, true);

@@ -4,6 +4,8 @@
 // light that cells show.
 #include "lanes/light_grid_show.h"
 
+#include "base/room.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,15 +122,11 @@ static bool forget_patches(LightGridState *state, int kinds)
     size_t count = (size_t)kinds * ((size_t)state->active + 1) * CELL_PATCHES;
     int most = atomic_load(&patches->count), least = 4 * state->active;
     most = most > least ? most : least;
-    if (patches->of_room < count) {
-        free(patches->of);
-        patches->of = malloc(count * sizeof *patches->of);
-        patches->of_room = patches->of ? count : 0;
-    }
+    room_make(&patches->of, &patches->of_room, count, sizeof *patches->of);
     if (patches->room < most) {
         free(patches->seen);
         patches->room = most + most / 4;
-        patches->seen = malloc((size_t)patches->room * sizeof *patches->seen);
+        patches->seen = room_new((size_t)patches->room, sizeof *patches->seen);
         if (!patches->seen) patches->room = 0; // patches are then computed at each use
     }
     atomic_store(&patches->count, 0);

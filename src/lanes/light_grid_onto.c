@@ -3,17 +3,16 @@
 // six faces of each cell (kernel/onto.h).
 #include "lanes/light_grid_onto.h"
 
+#include "base/room.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 static bool make_sent(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, room = filled + filled / 4;
-    if (state->sent_room >= filled) return true;
-    free(state->sent);
-    state->sent = malloc(room * GRID_WIDE * sizeof *state->sent);
-    state->sent_room = state->sent ? room : 0;
-    return state->sent != NULL;
+    return state->sent_room >= filled ||
+           room_make(&state->sent, &state->sent_room, room, GRID_WIDE * sizeof *state->sent);
 }
 
 bool light_grid_make_onto(LightGridState *state)

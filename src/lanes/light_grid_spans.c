@@ -4,6 +4,8 @@
 // front of all hair the light is the environment's, and light behind all hair is not needed.
 #include "lanes/light_grid_state.h"
 
+#include "base/room.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,11 +83,7 @@ bool light_grid_find_spans(LightGridState *state)
     const int *n = state->field.lattice.count;
     size_t rows =
         (size_t)n[0] * (size_t)n[1] + (size_t)n[1] * (size_t)n[2] + (size_t)n[2] * (size_t)n[0];
-    if (state->span_room < ORDINATE_GROUPS * rows) {
-        free(state->spans);
-        state->spans = malloc(ORDINATE_GROUPS * rows * sizeof *state->spans);
-        state->span_room = state->spans ? ORDINATE_GROUPS * rows : 0;
-    }
+    room_make(&state->spans, &state->span_room, ORDINATE_GROUPS * rows, sizeof *state->spans);
     for (int group = 0; group < ORDINATE_GROUPS && state->spans; ++group) find_group(state, group);
     return state->spans != NULL;
 }

@@ -4,6 +4,8 @@
 // vectorised, too.
 #include "lanes/project.h"
 
+#include "base/room.h"
+
 #include "lanes/shadow_tile.h"
 
 #include "glsl/kernel/ribbon.h"
@@ -216,25 +218,27 @@ SIMD_INLINE void widen(const Kept *kept, int count, const DrawParams *draw)
 }
 
 // The box of pixels whose centres the ribbon from point j can reach.
-SIMD_INLINE void find_boxes(const Kept *kept, int count, const DrawParams *draw)
+SIMD_INLINE void find_boxes(const Kept *kept, int count, const DrawParams *draw,
+                            float *restrict lefts, float *restrict tops, float *restrict rights,
+                            float *restrict bottoms)
 {
-    const float *x = kept->way_x, *y = kept->way_y;
+    const float *x = kept->way_x, *y = kept->way_y, *at_x = kept->x, *at_y = kept->y,
+                *half_width = kept->half_width, across = draw->width - 1, down = draw->height - 1;
     for (int j = 0; j < count - 1; ++j) {
-        float reach = simd_max(kept->half_width[j], kept->half_width[j + 1]) +
-                      0.5f * (fabsf(x[j]) + fabsf(y[j]));
+        float reach =
+            simd_max(half_width[j], half_width[j + 1]) + 0.5f * (fabsf(x[j]) + fabsf(y[j]));
         RibbonBound first = ribbon_bound(x[j], y[j], x[j - 1], y[j - 1]),
                     last = ribbon_bound(x[j], y[j], x[j + 1], y[j + 1]);
         float over = ribbon_overhang(first, x[j], y[j], reach),
-              beyond = ribbon_overhang(last, x[j], y[j], reach), a = kept->x[j] - x[j] * over,
-              b = kept->y[j] - y[j] * over, c = kept->x[j + 1] + x[j] * beyond,
-              d = kept->y[j + 1] + y[j] * beyond, wide = reach * fabsf(y[j]),
+              beyond = ribbon_overhang(last, x[j], y[j], reach), a = at_x[j] - x[j] * over,
+              b = at_y[j] - y[j] * over, c = at_x[j + 1] + x[j] * beyond,
+              d = at_y[j + 1] + y[j] * beyond, wide = reach * fabsf(y[j]),
               tall = reach * fabsf(x[j]);
         float left = simd_max(simd_ceil(simd_max(simd_min(a, c) - wide - 0.5f, -1)), 0),
               top = simd_max(simd_ceil(simd_max(simd_min(b, d) - tall - 0.5f, -1)), 0),
-              right = simd_min(simd_max(a, c) + wide - 0.5f, draw->width - 1),
-              bottom = simd_min(simd_max(b, d) + tall - 0.5f, draw->height - 1);
-        kept->left[j] = left, kept->top[j] = top, kept->right[j] = right, kept->bottom[j] = bottom;
-        kept->seen[j] = (left <= right) & (top <= bottom) & ((x[j] != 0) | (y[j] != 0));
+              right = simd_min(simd_max(a, c) + wide - 0.5f, across),
+              bottom = simd_min(simd_max(b, d) + tall - 0.5f, down);
+        lefts[j] = left, tops[j] = top, rights[j] = right, bottoms[j] = bottom;
     }
 }
 
@@ -265,7 +269,9 @@ static void list_ribbons(const Project *project, const Kept *kept, int count, si
     size_t n = to->item_count[part], first = n;
     bool hides = false;
     for (int j = 0; j < count - 1; ++j) {
-        if (!kept->seen[j]) continue;
+        if (!(kept->left[j] <= kept->right[j] && kept->top[j] <= kept->bottom[j]) ||
+            (kept->way_x[j] == 0 && kept->way_y[j] == 0))
+            continue;
         int left = (int)kept->left[j], top = (int)kept->top[j], right = (int)kept->right[j],
             bottom = (int)kept->bottom[j];
         float a = kept->inverse_w[j], b = kept->inverse_w[j + 1], depth = 0.5f * (a + b);
@@ -309,7 +315,7 @@ SIMD_INLINE void project_tile(const Project *project, const LaneHair *hair, size
         int count = pack_points(rows, masks, points, i, &kept);
         find_directions(&kept, count);
         widen(&kept, count, project->draw);
-        find_boxes(&kept, count, project->draw);
+        find_boxes(&kept, count, project->draw, kept.left, kept.top, kept.right, kept.bottom);
         store_points(&kept, count, to->points + slot);
         list_ribbons(project, &kept, count, slot, part);
     }
@@ -337,11 +343,7 @@ SIMD_STAGE(project_hairs, Project)
 
 static Result make_scratch(Projection *projection, size_t points, size_t most, Error *error)
 {
-    if (projection->point_room < points) {
-        free(projection->points);
-        projection->points = malloc(points * sizeof *projection->points);
-        projection->point_room = projection->points ? points : 0;
-    }
+    room_make(&projection->points, &projection->point_room, points, sizeof *projection->points);
     const bool grows = projection->scratch_room < most;
     if (grows) projection->scratch_room = 0;
     for (int part = 0; part < projection->parts && grows; ++part) {

@@ -2,6 +2,8 @@
 // Shades 16 points at a time, one for each lane, all of one batch.
 #include "lanes/shade.h"
 
+#include "base/room.h"
+
 #include "lanes/lamp.h"
 #include "lanes/light_grid_show.h"
 
@@ -15,13 +17,8 @@ enum { W = STRAND_TILE };
 Result shades_begin(Shades *shades, size_t points, Error *error)
 {
     bool begins = shades->room < points || shades->image == UINT16_MAX;
-    if (shades->room < points) {
-        shades_destroy(shades);
-        shades->points = malloc(points * sizeof *shades->points);
-        if (!shades->points)
-            return error_set(error, RESULT_FAILED, "no memory to shade %zu points", points);
-        shades->room = points;
-    }
+    if (!room_make(&shades->points, &shades->room, points, sizeof *shades->points))
+        return error_set(error, RESULT_FAILED, "no memory to shade %zu points", points);
     if (begins) {
         memset((void *)shades->points, 0, shades->room * sizeof *shades->points);
         shades->image = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/shadow.h"
 
+#include "base/room.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,8 +38,8 @@ static Result make_room(LaneShadow *shadow, int maps, Error *error)
     TRY(shadow_map_reserve(&shadow->map, maps, error));
     if (shadow->room >= maps) return RESULT_OK;
     free_maps(shadow);
-    shadow->depths = malloc((size_t)maps * side * side * sizeof *shadow->depths);
-    if (shadow->map.deep) shadow->layers = malloc((size_t)maps * words * sizeof *shadow->layers);
+    shadow->depths = room_new((size_t)maps * side * side, sizeof *shadow->depths);
+    if (shadow->map.deep) shadow->layers = room_new((size_t)maps * words, sizeof *shadow->layers);
     shadow->room = maps;
     if (shadow->depths && (shadow->layers || !shadow->map.deep)) return RESULT_OK;
     free_maps(shadow);

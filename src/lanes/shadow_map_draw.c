@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/shadow_map.h"
 
+#include "base/room.h"
+
 #include "lanes/shadow_finish.h"
 #include "lanes/shadow_splat.h"
 #include "lanes/shadow_tile.h"
@@ -70,8 +72,8 @@ Result shadow_map_reserve(ShadowMap *shadow, int maps, Error *error)
     free_sums(shadow);
     shadow->at_once = (int)at_once;
     shadow->first =
-        malloc(copies * (size_t)shadow->coarse * (size_t)shadow->coarse * sizeof *shadow->first);
-    if (shadow->deep) shadow->sums = malloc(copies * map_bytes(shadow));
+        room_new(copies * (size_t)shadow->coarse * (size_t)shadow->coarse, sizeof *shadow->first);
+    if (shadow->deep) shadow->sums = room_new(copies, map_bytes(shadow));
     if (shadow->first && (shadow->sums || !shadow->deep)) return RESULT_OK;
     free_sums(shadow);
     return error_set(error, RESULT_FAILED, "no memory for shadow maps of %d texels", shadow->side);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/shadow_mesh.h"
 
+#include "base/room.h"
 #include "base/simd.h"
 
 #include <stdlib.h>
@@ -63,7 +64,7 @@ static Result make_room(LaneMeshShadow *shadow, int maps, Error *error)
     enum { SQUARES = SIDE / SQUARE * (SIDE / SQUARE) };
     if (shadow->room >= maps) return RESULT_OK;
     shadow_mesh_destroy(shadow);
-    shadow->depths = malloc((size_t)maps * SIDE * SIDE * sizeof *shadow->depths);
+    shadow->depths = room_new((size_t)maps * SIDE * SIDE, sizeof *shadow->depths);
     shadow->bounds = malloc((size_t)maps * SQUARES * sizeof *shadow->bounds);
     shadow->room = maps;
     if (shadow->depths && shadow->bounds) return RESULT_OK;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lanes/shadow_points.h"
 
+#include "base/room.h"
+
 #include "lanes/shadow_tile.h"
 
 #include <stdlib.h>
@@ -14,12 +16,11 @@ static size_t count_tiles(const MappedCaster *caster)
 
 static bool make_room(ShadowPoints *points, size_t count)
 {
-    if (count <= points->room) return true;
-    shadow_points_destroy(points);
-    if (count > MOST_BYTES / sizeof *points->all) return false;
-    points->all = malloc(count * sizeof *points->all);
-    points->room = points->all ? count : 0;
-    return points->all != NULL;
+    if (count > MOST_BYTES / sizeof *points->all) {
+        shadow_points_destroy(points);
+        return false;
+    }
+    return room_make(&points->all, &points->room, count, sizeof *points->all);
 }
 
 typedef struct Finder {

@@ -2,6 +2,7 @@
 #include "lanes/shadow_sample.h"
 
 #include "base/parallel.h"
+#include "base/room.h"
 
 #include "glsl/common/hash.h"
 
@@ -60,12 +61,9 @@ static void take_tiles(void *data, int part)
 
 static Result grow(void *array, size_t *room, size_t count, Error *error)
 {
-    void **mine = array;
-    if (*room >= count) return RESULT_OK;
-    free(*mine);
-    *mine = malloc(count * 4 * sizeof(float));
-    *room = *mine ? count : 0;
-    return *mine ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for shadows of hair");
+    return room_make(array, room, count, 4 * sizeof(float))
+               ? RESULT_OK
+               : error_set(error, RESULT_FAILED, "no memory for shadows of hair");
 }
 
 static size_t count_particles(const MappedCaster *caster, uint32_t step)
