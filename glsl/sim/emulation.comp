@@ -19,6 +19,7 @@
 // dispatches (step_params.phase), each with MOST_LINKS links to turn.
 #include "sim/emulation_params.h"
 #include "sim/particles.glsl"
+#define FIRST_KEPT 1
 #include "sim/keep.glsl"
 #include "sim/strand.glsl"
 #include "sim/shuffle.glsl"
@@ -31,6 +32,13 @@
 
 const uint MOST_LINKS = 40000u; // also in solver_emulation.c
 
+// The root's position so far (xyz) and the energy gained in the step's middle (w).
+#if IN_REGISTERS
+vec4 kept_root;
+#else
+#define kept_root scratch[keep_base]
+#endif
+
 vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before)
 {
     return vec4(direction(q - q_before), fetch_rest(strand, j).w);
@@ -40,16 +48,16 @@ vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before)
 #if THESIS
 void predict(Strand strand)
 {
-    int last = int(step_params.vertex_count - 1u);
     vec3 q_before = strand.root_old, style = vec3(0.0);
-    for (int j = 1; j <= last; ++j) {
+    for (int k = 0; k < LAST; ++k) {
+        int j = k + 1;
         vec3 q = fetch_position(strand, j),
              p = (q - strand.root) + predicted_move(strand, j, q, style);
         keep(j, link_at(strand, j, q, q_before));
         keep_velocity(strand.address + j * STRAND_TILE, j, vec4(p, 0.0));
         q_before = q;
     }
-    keep(0, vec4(strand.root_old - strand.root, 0.0));
+    kept_root = vec4(strand.root_old - strand.root, 0.0);
 }
 
 vec3 aim_of(Strand strand, int j)
@@ -67,60 +75,99 @@ void predict(Strand strand)
         keep(j, link_at(strand, j, q, q_before));
         q = q_before;
     }
-    keep(0, vec4(vec3(0.0), middle.gained));
+    kept_root = vec4(vec3(0.0), middle.gained);
 }
 
 vec3 aim_of(Strand strand, int j)
 {
     return j == 0 ? vec3(0.0) : recall_aim(strand.address + j * STRAND_TILE, j);
 }
+#endif
 
+// Where the sweeps of a pull of particle i begin. Sweeps over registers visit all links.
+#if IN_REGISTERS
+#define FIRST_BEYOND(i) 0
+#define FIRST_BEFORE(i) LAST
+#else
+#define FIRST_BEYOND(i) (i)
+#define FIRST_BEFORE(i) (i)
+#endif
+
+// The target of particle i, which only the order of pulls knows. To read an array in registers at
+// such a place would take llvmpipe three seconds more to compile.
+vec3 target_of(Strand strand, int i)
+{
+#if IN_REGISTERS
+    vec3 target = vec3(0.0);
+    for (int k = 0; k < LAST; ++k) target = k + 1 == i ? aim_of(strand, k + 1) : target;
+    return target;
+#else
+    return aim_of(strand, i);
+#endif
+}
+
+#if !THESIS
 // Pulls particle i to its target; the others follow in the frames of their own targets. Returns the
 // position of particle `next` afterwards, like pull.
-vec3 pull_along(Strand strand, int i, int next)
+vec3 pull_along(Strand strand, vec3 target, int i, int next)
 {
-    int last = int(step_params.vertex_count - 1u);
-    vec3 target = aim_of(strand, i), at = target, x = target;
-    for (int j = i + 1; j <= last; ++j) {
+    vec3 at = target, x = target;
+    for (int k = FIRST_BEYOND(i); k < LAST; ++k) {
+        int j = k + 1;
         vec4 link = recall(j);
         vec3 move = limit_move(x + link.w * link.xyz - aim_of(strand, j));
-        vec3 d = tractrix_turn(link.xyz, link.w, move);
+        vec3 d = tractrix_turn(link.xyz, link.w, move, j > i);
         keep(j, vec4(d, link.w));
-        x += link.w * d;
+        x += (j > i ? link.w : 0.0) * d;
         at = j <= next ? x : at;
     }
     x = target;
-    for (int j = i; j >= 1; --j) {
+    for (int j = FIRST_BEFORE(i); j >= 1; --j) {
         vec4 link = recall(j);
         vec3 move = limit_move(x - link.w * link.xyz - aim_of(strand, j - 1));
-        vec3 d = -tractrix_turn(-link.xyz, link.w, move);
+        vec3 d = -tractrix_turn(-link.xyz, link.w, move, j <= i);
         keep(j, vec4(d, link.w));
-        x -= link.w * d;
-        at = j > next ? x : at;
+        x -= (j <= i ? link.w : 0.0) * d;
+        at = j > next && j <= i ? x : at;
     }
     return at;
 }
 #endif
 
-// Pulls particle i, now at x, to its target. Returns the position of particle `next` afterwards.
-vec3 pull(Strand strand, int i, int next, vec3 x)
+// Turns link j, on the tip's side of particle i, which is pulled. `at` becomes the position of
+// particle `next` when the sweep has passed it.
+void turn_beyond(int j, int i, int next, inout vec3 move, inout vec3 at)
 {
-    int last = int(step_params.vertex_count - 1u);
-    vec3 target = aim_of(strand, i), at = target;
-    vec3 move = limit_move(target - x);
-    for (int j = i + 1; j <= last; ++j) {
-        vec4 link = recall(j);
-        vec3 d = tractrix_turn(link.xyz, link.w, move);
-        keep(j, vec4(d, link.w));
-        at += (j <= next ? link.w : 0.0) * d;
+    vec4 link = recall(j);
+    vec3 d = tractrix_turn(link.xyz, link.w, move, j > i);
+    keep(j, vec4(d, link.w));
+    at += (j > i && j <= next ? link.w : 0.0) * d;
+}
+
+// The same on the root's side.
+void turn_before(int j, int i, int next, inout vec3 move, inout vec3 at)
+{
+    vec4 link = recall(j);
+    vec3 d = -tractrix_turn(-link.xyz, link.w, move, j <= i);
+    keep(j, vec4(d, link.w));
+    at -= (j > next && j <= i ? link.w : 0.0) * d;
+}
+
+// Pulls particle i, now at x, to its target. Returns the position of particle `next` afterwards.
+// In registers the two sides take turns, so that a processor computes them at the same time.
+vec3 pull(vec3 target, int i, int next, vec3 x)
+{
+    vec3 at = target;
+    vec3 move = limit_move(target - x), move_before = move;
+    for (int k = FIRST_BEYOND(i); k < LAST; ++k) {
+        turn_beyond(k + 1, i, next, move, at);
+#if IN_REGISTERS
+        turn_before(LAST - k, i, next, move_before, at);
     }
-    move = limit_move(target - x);
-    for (int j = i; j >= 1; --j) {
-        vec4 link = recall(j);
-        vec3 d = -tractrix_turn(-link.xyz, link.w, move);
-        keep(j, vec4(d, link.w));
-        at -= (j > next ? link.w : 0.0) * d;
+#else
     }
+    for (int j = i; j >= 1; --j) turn_before(j, i, next, move_before, at);
+#endif
     return at;
 }
 
@@ -134,8 +181,7 @@ int next_mover(inout Shuffle order, uint end)
 #endif
 }
 
-// Does the moves of this phase and returns whether they were the last. Entry 0 stores the root's
-// position so far and the energy gained in the step's middle.
+// Does the moves of this phase and returns whether they were the last.
 bool pull_all(Strand strand)
 {
     uint count = step_params.vertex_count - 1u, phase = step_params.phase;
@@ -147,25 +193,26 @@ bool pull_all(Strand strand)
     int moves = 0;
     while (next_mover(counted, end) > 0) ++moves;
     int i = next_mover(order, end);
-    vec4 root = recall(0);
-    vec3 x = root.xyz;
-    for (int j = 1; j <= i; ++j) {
-        vec4 link = recall(j);
-        x += link.w * link.xyz;
+    vec3 x = kept_root.xyz, target = target_of(strand, i);
+    for (int k = 0; k < FIRST_BEFORE(i); ++k) {
+        vec4 link = recall(k + 1);
+        x += (k < i ? link.w : 0.0) * link.xyz;
     }
 #if !THESIS
     if (phase == 0u) {
         int next = next_mover(order, end);
-        x = pull_along(strand, i, next);
+        x = pull_along(strand, target, i, next);
+        target = target_of(strand, next);
         i = next, --moves;
     }
 #endif
     for (int k = 0; k < moves; ++k) {
         int next = next_mover(order, end);
-        x = pull(strand, i, next, x);
-        i = next;
+        vec3 next_target = target_of(strand, next);
+        x = pull(target, i, next, x);
+        target = next_target, i = next;
     }
-    keep(0, vec4(x, root.w));
+    kept_root.xyz = x;
     return end == order.size;
 }
 
@@ -178,15 +225,13 @@ vec3 home(inout vec3 move, int j)
 
 void finish(Strand strand)
 {
-    int last = int(step_params.vertex_count - 1u);
-    vec4 root = recall(0);
-    vec3 move = limit_move(-root.xyz), x = vec3(0.0);
+    vec3 move = limit_move(-kept_root.xyz), x = vec3(0.0);
 #if THESIS
     vec3 style = vec3(0.0);
     velocities[strand.address] = vec4(strand.root_velocity, 0.0);
     positions[strand.address] = vec4(strand.root, 1.0);
-    for (int j = 1; j <= last; ++j) {
-        int a = strand.address + j * STRAND_TILE;
+    for (int k = 0; k < LAST; ++k) {
+        int j = k + 1, a = strand.address + j * STRAND_TILE;
         vec4 r = fetch_rest(strand, j);
         vec3 q = fetch_position(strand, j);
         x += r.w * home(move, j);
@@ -198,12 +243,13 @@ void finish(Strand strand)
     }
 #else
     Constraint constraint = constrain_open(strand);
-    for (int j = 1; j <= last; ++j) {
+    for (int k = 0; k < LAST; ++k) {
+        int j = k + 1;
         vec3 d = home(move, j);
         x += fetch_rest(strand, j).w * d;
         constrain_add(constraint, strand, j, d, x);
     }
-    constrain_finish(constraint, strand, root.w);
+    constrain_finish(constraint, strand, kept_root.w);
 #endif
 }
 

@@ -12,6 +12,7 @@
 // energy of loose strands rises without end.
 #include "sim/hybrid_params.h"
 #include "sim/particles.glsl"
+#define FIRST_KEPT 1
 #include "sim/keep.glsl"
 #include "sim/strand.glsl"
 #include "sim/tractrix.glsl"
@@ -41,7 +42,8 @@ void pull_root(inout Constraint constraint, Strand strand, vec3 move)
 {
     int last = LAST;
     vec3 x = vec3(0.0);
-    for (int j = 1; j <= last; ++j) {
+    for (int k = 0; k < last; ++k) {
+        int j = k + 1;
         float l = fetch_rest(strand, j).w;
         vec3 d = tractrix_renormalise(recall(j).xyz);
         d = tractrix_renormalise(tractrix_turn(d, l, move));

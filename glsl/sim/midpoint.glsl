@@ -23,8 +23,7 @@
 //     keep = 1/(1 + 2z),  draw = keep z/h,  z = k h^2 (step_style_spring in step.c).
 // (Evaluation at q + dt w/2 would be of second order but without damping: strands that their
 // springs compress buckled and trembled for ever.)
-// Sweeps run in alternating directions. Needs strand.glsl, tridiagonal.glsl, and keep, recall (vec4
-// per particle), keep_beside, recall_beside.
+// Sweeps run in alternating directions. Needs strand.glsl, tridiagonal.glsl, keep.glsl.
 
 // K(v) of particle j relative to the root: half a step of forces and drag.
 vec3 kicked(Strand strand, int j, vec3 v)
@@ -59,8 +58,8 @@ vec3 sprung_apart(Strand strand, int j, vec3 kick, vec3 kick_before, vec3 q, vec
 vec3 style_of_tip(Strand strand)
 {
     vec3 style = vec3(0.0);
-    for (int j = 1; j <= LAST; ++j)
-        style = next_style(style, fetch_rest(strand, j), strand.rotation);
+    for (int k = 0; k < LAST; ++k)
+        style = next_style(style, fetch_rest(strand, k + 1), strand.rotation);
     return style;
 }
 #endif
@@ -107,13 +106,14 @@ vec3 find_tensions(Strand strand)
     float h = 0.5 * strand.dt, lambda = 0.0, factor_before = 0.0, t_before = 0.0, factor;
     vec3 q_before = strand.root_old, g_before = vec3(0.0), vs_before = vec3(0.0), style = vec3(0.0);
     Row3 row = NO_ROW3;
-    for (int j = 1; j <= last; ++j) {
-        vec4 k = recall(j), r = fetch_rest(strand, j);
+    for (int k = 0; k < last; ++k) {
+        int j = k + 1;
+        vec4 kept = recall(j), r = fetch_rest(strand, j);
         vec3 q = fetch_position(strand, j);
-        lambda = k.w - factor_before * lambda;
+        lambda = kept.w - factor_before * lambda;
         factor_before = recall_beside(j);
         float pull = max(lambda, 0.0), t = pull / r.w;
-        vec3 g = (lambda - pull) * k.xyz + t * (q - q_before);
+        vec3 g = (lambda - pull) * kept.xyz + t * (q - q_before);
         if (j > 1) {
             row = eliminate(row, -h * t_before, 1.0 + h * (t_before + t), vs_before - g_before + g,
                             factor);

@@ -90,6 +90,8 @@ void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 alo
 }
 
 #if IN_REGISTERS
+const int LAST = VERTICES - 1; // turns of the loops, entries of arrays: see keep.glsl
+
 void main()
 {
     int s = first_strand();
@@ -97,8 +99,8 @@ void main()
     int base = strand_base(s);
     open_frame(s);
     vec4 own = strand_root(base);
-    vec3 x[VERTICES], m[VERTICES], wind = strand_wind(own.xyz, root_position(own));
-    float l[VERTICES];
+    vec3 x[VERTICES], m[LAST], wind = strand_wind(own.xyz, root_position(own));
+    float l[LAST];
     int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
     vec4 root = strand_root(base), rotation = frame_rotation;
     vec3 drawn = position_before(base).xyz, at = vec3(0.0), carry = root_move(root);
@@ -107,52 +109,53 @@ void main()
     vec3 style[VERTICES]; // relative to the root
     style[0] = vec3(0.0);
 #endif
-    for (int j = 1; j < VERTICES; ++j) {
-        int a = base + j * STRAND_TILE;
+    for (int k = 0; k < LAST; ++k) {
+        int j = k + 1, a = base + j * STRAND_TILE;
         vec3 next = position_before(a).xyz;
         vec4 v = velocity_before(a);
         vec4 segment = texelFetch(rest, a);
-        l[j] = segment.w;
-        at += link_before(drawn, next, l[j], v.w);
+        l[k] = segment.w;
+        at += link_before(drawn, next, l[k], v.w);
         drawn = next;
         x[j] = at;
-        m[j] = first_flight(j, v.xyz, wind);
+        m[k] = first_flight(j, v.xyz, wind);
 #if STYLED
         style[j] = next_style(style[j - 1], segment, rotation);
-        m[j] += pull_at(j, true) * (x[0] + style[j] - (x[j] + m[j]));
+        m[k] += pull_at(j, true) * (x[0] + style[j] - (x[j] + m[k]));
 #endif
     }
 
 #if BULLET
-    vec3 q[VERTICES]; // before the flight
-    for (int j = 1; j < VERTICES; ++j) q[j] = x[j], x[j] += m[j];
+    vec3 q[LAST]; // before the flight
+    for (int k = 0; k < LAST; ++k) q[k] = x[k + 1], x[k + 1] += m[k];
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        vec3 from = x[1] + mended(x[1] - x[0], l[1], 1.0);
-        for (int j = 2; j < VERTICES; ++j) {
-            vec3 push = mended(x[j] - from, l[j], 2.0);
-            x[j - 1] = from - push;
-            from = x[j] + push;
+        vec3 from = x[0];
+        for (int k = 0; k < LAST; ++k) {
+            vec3 push = mended(x[k + 1] - from, l[k], k == 0 ? 1.0 : 2.0);
+            if (k > 0) x[k] = from - push;
+            from = x[k + 1] + push;
         }
-        x[VERTICES - 1] = from;
+        x[LAST] = from;
     }
-    for (int j = 1; j < VERTICES; ++j) m[j] = x[j] - q[j];
+    for (int k = 0; k < LAST; ++k) m[k] = x[k + 1] - q[k];
 #else
     // The displacement in the first small step is known. A particle flies just before its first
     // link is corrected.
     for (int step = 0; step < small_steps; ++step) {
         vec3 from = root_at(carry, step + 1, small_steps), gone = vec3(0.0), push = vec3(0.0);
         x[0] = from;
-        for (int j = 1; j < VERTICES; ++j) {
-            vec3 move = step > 0 ? carried_share(j) * m[j] + fall_of(j, wind) : m[j];
+        for (int k = 0; k < LAST; ++k) {
+            int j = k + 1;
+            vec3 move = step > 0 ? carried_share(j) * m[k] + fall_of(j, wind) : m[k];
 #if STYLED
             move += (step > 0 ? pull_at(j, false) : 0.0) * (x[0] + style[j] - (x[j] + move));
 #endif
             vec3 to = x[j] + move;
-            push = mended(to - from, l[j], j == 1 ? 1.0 : 2.0);
-            if (j > 1) x[j - 1] = from - push, m[j - 1] = gone - push;
+            push = mended(to - from, l[k], k == 0 ? 1.0 : 2.0);
+            if (k > 0) x[k] = from - push, m[k - 1] = gone - push;
             from = to + push, gone = move + push;
         }
-        x[VERTICES - 1] = from, m[VERTICES - 1] = gone;
+        x[LAST] = from, m[LAST - 1] = gone;
     }
 #endif
 
@@ -160,8 +163,8 @@ void main()
     vec3 along = rotate(rotation, texelFetch(rest, base + STRAND_TILE).xyz);
     carry_lead(base);
     positions[base] = vec4(drawn, 1.0);
-    for (int j = 1; j < VERTICES; ++j)
-        finish(base + j * STRAND_TILE, x[j] - x[j - 1], l[j], m[j], drawn, along);
+    for (int k = 0; k < LAST; ++k)
+        finish(base + (k + 1) * STRAND_TILE, x[k + 1] - x[k], l[k], m[k], drawn, along);
 }
 #else
 // Strands of any length: each dispatch (phase) is one sweep along the strand in scratch memory. A

@@ -23,8 +23,9 @@ const float TRACTRIX_MAX_EXPONENT = 60.0;
 
 // Turns the unit direction d (head to tail) of a segment of length L > 0 whose head moves by
 // `move`. Returns the new direction; `move` becomes the tail's displacement. Components of `move`
-// up to 1e18 are safe; a move below 1e-18 only translates the segment.
-vec3 tractrix_turn(vec3 d, float L, inout vec3 move)
+// up to 1e18 are safe; a move below 1e-18 only translates the segment. If not `turns`, both stay: a
+// loop over registers visits segments that a pull does not reach.
+vec3 tractrix_turn(vec3 d, float L, inout vec3 move, bool turns)
 {
     float ss = max(dot(move, move), 1e-36);
     float inverse = inversesqrt(ss);
@@ -36,10 +37,12 @@ vec3 tractrix_turn(vec3 d, float L, inout vec3 move)
     float A = 4.0 * E - M * (1.0 + E);
     float B = A + 2.0 * M;
     float D = M + E * E * (4.0 - M);
-    vec3 change = (f / D) * (A * d - B * e);
+    vec3 change = (turns ? f / D : 0.0) * (A * d - B * e);
     move += L * change;
     return d + change;
 }
+
+vec3 tractrix_turn(vec3 d, float L, inout vec3 move) { return tractrix_turn(d, L, move, true); }
 
 // Normalises a direction that is off only by rounding, with one Newton step. (If the head has
 // pushed almost exactly along the segment so far that it flipped, the result's direction and length
