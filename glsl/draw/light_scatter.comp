@@ -17,19 +17,21 @@ layout(std430, binding = BIND_LIGHT_SENT_OUT) buffer Sent { float sent[]; };
 
 shared vec3 from[LIGHT_ORDINATES];
 
-// The mesh reflects its colour's share of the light equally in all directions: the mean over those
-// in which the mesh itself does not stand in the way.
+// The mesh in a cell reflects its colour's share of the light that it receives, equally in all
+// directions.
 void reflect_at(int slot)
 {
     ivec3 place = cell_place(cell[slot].places.x);
-    vec3 sum = vec3(0.0);
-    float count = 0.0;
-    for (int group = 0; group < LIGHT_ORDINATES / LIGHT_LANES; ++group) {
-        if (!lets_in(place, group)) continue;
-        for (int l = 0; l < LIGHT_LANES; ++l) sum += from[group * LIGHT_LANES + l];
-        count += float(LIGHT_LANES);
+    if (!is_beside_mesh(place)) return;
+    vec3 n = mesh_normal(place), sum = vec3(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < LIGHT_ORDINATES; ++i) {
+        vec3 way = light_params.ordinate[i].xyz;
+        float weight = cell_facing(n.x, n.y, n.z, -way.x, -way.y, -way.z);
+        sum += weight * from[i];
+        weights += weight;
     }
-    cell[slot].glow.rgb = draw_params.mesh_color.rgb * sum / max(count, 1.0);
+    cell[slot].glow.rgb = draw_params.mesh_color.rgb * sum / weights;
 }
 
 void main()

@@ -74,7 +74,6 @@ static Result fill_all(LightGridState *state, const GridScene *scene, Error *err
     light_grid_place(state, scene, true);
     THEN(result, light_field_make_first(&state->field, scene, error));
     if (result != RESULT_OK) return result;
-    memset(state->glow, 0, (size_t)state->active * 3 * sizeof *state->glow);
     if (!light_grid_fill_cells(state, scene)) return RESULT_FAILED;
     release_items(state);
     return RESULT_OK;

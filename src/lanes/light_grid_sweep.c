@@ -359,23 +359,23 @@ SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows
         }
 }
 
-// The mesh reflects the light of the last order, times its colour, equally in all directions: the
-// mean over the directions in which the mesh itself does not stand in the way.
+// The mesh in a cell reflects its colour's share of the light of the last order that it receives,
+// equally in all directions.
 SIMD_INLINE void reflect(const LightGridState *state, int slot)
 {
-    const int *n = state->field.lattice.count;
-    int c = state->cell_of[slot];
-    const int cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
-    float sum[3] = {0}, count = 0;
-    for (int g = 0; g < ORDINATE_GROUPS; ++g) {
-        if (!light_field_lets_in(&state->field, cell, g)) continue;
-        const float *order = grid_lane(state, state->order, g, slot);
-        for (int k = 0; k < 3; ++k)
-            for (int l = 0; l < GRID_LANES; ++l) sum[k] += order[k * GRID_LANES + l];
-        count += GRID_LANES;
+    int cell[3];
+    float n[3], sum[3] = {0}, weights = 0;
+    grid_place(state, slot, cell);
+    if (!light_field_is_beside_mesh(&state->field, cell)) return;
+    light_field_normal(&state->field, cell, n);
+    for (int d = 0; d < ORDINATES; ++d) {
+        const float *order = grid_lane(state, state->order, d / GRID_LANES, slot) + d % GRID_LANES;
+        float weight =
+            cell_facing(n[0], n[1], n[2], -ORDINATE[0][d], -ORDINATE[1][d], -ORDINATE[2][d]);
+        for (int k = 0; k < 3; ++k) sum[k] += weight * order[k * GRID_LANES];
+        weights += weight;
     }
-    for (int k = 0; k < 3; ++k)
-        state->glow[3 * slot + k] = state->mesh_color[k] * sum[k] / simd_max(count, 1);
+    for (int k = 0; k < 3; ++k) state->glow[3 * slot + k] = state->mesh_color[k] * sum[k] / weights;
 }
 
 SIMD_INLINE void scatter(const LightGridState *state, int part)

@@ -334,6 +334,9 @@ static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCast
         int range[2] = {first, first + turn < passes->filled ? first + turn : passes->filled};
         TRY(fill_range(passes, scene, casters, range, error));
     }
+    if (!field->walled) return RESULT_OK;
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_GLOW, 0, error));
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_GLOW, passes->active);
     return RESULT_OK;
 }
 
