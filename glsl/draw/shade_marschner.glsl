@@ -49,12 +49,12 @@ struct Outgoing {
 
 Outgoing outgoing(Fibre m, float sin_r, float cos_r)
 {
-    return Outgoing(asin(sin_r) - atan(m.tilt_sin, m.tilt_cos));
+    return Outgoing(asin(clamp(sin_r, -1.0, 1.0)) - atan(m.tilt_sin, m.tilt_cos));
 }
 
 vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
 {
-    vec3 off = asin(sin_i) + to.angle;
+    vec3 off = asin(clamp(sin_i, -1.0, 1.0)) + to.angle;
     return vec3(fibre_gauss(off.x, m.sharpness.x, cos_i, cos_d),
                 fibre_gauss(off.y, m.sharpness.y, cos_i, cos_d),
                 fibre_gauss(off.z, m.sharpness.z, cos_i, cos_d));

@@ -83,7 +83,7 @@ void main()
           fall = account_fall(strand, last),
           over = gained + max(rise, 0.0) - PAID_ABOVE * (fall + kinetic);
     over = clamp(over < 1e30 ? over : 0.0, 0.0, kinetic);
-    if (over > 0.0) velocities[tip].w = 1.0 - sqrt(1.0 - over / kinetic);
+    if (over > 0.0) velocities[tip].w = 1.0 - root_of_rest(over / kinetic);
     velocities[strand.address] = vec4(strand.root_velocity, gained - over);
 #endif
 }

@@ -69,6 +69,10 @@ float share_within(float a, float b, float c)
     return clamp(b > 0.0 ? -c / q : q / a, 0.0, 1.0);
 }
 
+// The factor of velocities that leaves the share 1 - x of their energy. A quotient of equal numbers
+// may exceed 1: GLSL 4.30 (4.7.1) allows divisions an error of 2.5 units in the last place.
+float root_of_rest(float x) { return sqrt(max(1.0 - x, 0.0)); }
+
 #if SLOWS_AGAIN
 const int MOST_SLOWED = 6; // per step
 const float LESS = 0.4;    // factor of each reduction; one half would leave it undecided which way
@@ -140,7 +144,7 @@ float account_close(inout Account account, Strand strand, int last)
         kinetic *= share * share;
         gained = kinetic + share * linear + constant;
         over = clamp(gained - (fall + ALLOWED * kinetic), 0.0, kinetic);
-        kept = kinetic > 0.0 ? sqrt(1.0 - over / kinetic) : 1.0;
+        kept = kinetic > 0.0 ? root_of_rest(over / kinetic) : 1.0;
         gained += account_slow(account, strand, last, share, kept) -
                   mix(account.stored_before, account.stored, share) - over;
         gained += kept * kept * (per_square * account.squares - kinetic);
