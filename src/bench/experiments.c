@@ -392,6 +392,7 @@ static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
         strcmp(run->method->algo, "hybrid") == 0 || strcmp(run->method->algo, "emulation") == 0;
     double a[EXPERIMENT_POINTS][3] = {{0}}, b[EXPERIMENT_POINTS][3] = {{0}};
     double h = trial->step.dt / solver_substeps(&trial->solver, &trial->step);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, velocities->buffer);
     for (int j = 0; j < run->setup->n; ++j) {
         float v[4];

@@ -173,6 +173,7 @@ bool trial_read_tip(const Trial *trial, uint32_t batch, uint32_t strand, float t
 {
     const GpuBuffer *tips = trial_buffer(trial, batch, SOLVER_TIPS);
     if (!tips) return false;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, tips->buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(strand * sizeof(float[2][4])),
                        sizeof(float[2][4]), tip);

@@ -47,6 +47,7 @@ static Written written[WATCHED];
 static Fence fences[FENCES];
 static int written_next, fence_next;
 static uint64_t passed; // number of the last call whose work is known to be complete
+static bool unordered;  // shaders have run since the last barrier for reads of buffers
 
 // --- Wrappers that count.
 
@@ -103,6 +104,11 @@ static GLuint bound(GLenum target)
     return (GLuint)buffer;
 }
 
+static void note_read(void)
+{
+    now.all.unordered += unordered;
+}
+
 static void note_written(GLuint buffer)
 {
     int i = 0;
@@ -132,6 +138,7 @@ static void EPOXY_CALLSPEC watch_glReadPixels(GLint x, GLint y, GLsizei width, G
 static void EPOXY_CALLSPEC watch_glCopyBufferSubData(GLenum from, GLenum to, GLintptr from_offset,
                                                      GLintptr to_offset, GLsizeiptr size)
 {
+    note_read();
     count_glCopyBufferSubData(from, to, from_offset, to_offset, size);
     note_written(bound(to));
 }
@@ -141,6 +148,7 @@ static void *EPOXY_CALLSPEC watch_glMapBufferRange(GLenum target, GLintptr offse
 {
     const GLbitfield free = GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_UNSYNCHRONIZED_BIT;
     bool done = is_done(bound(target));
+    if (!done && access & GL_MAP_READ_BIT) note_read();
     if (access & GL_MAP_READ_BIT)
         ++*(done ? &now.all.late : &now.all.blocking);
     else
@@ -153,7 +161,26 @@ static void EPOXY_CALLSPEC watch_glGetBufferSubData(GLenum target, GLintptr offs
 {
     bool done = is_done(bound(target));
     ++*(done ? &now.all.late : &now.all.blocking);
+    if (!done) note_read();
     count_glGetBufferSubData(target, offset, size, data);
+}
+
+static void EPOXY_CALLSPEC watch_glDispatchCompute(GLuint x, GLuint y, GLuint z)
+{
+    unordered = true;
+    count_glDispatchCompute(x, y, z);
+}
+
+static void EPOXY_CALLSPEC watch_glDispatchComputeIndirect(GLintptr offset)
+{
+    unordered = true;
+    count_glDispatchComputeIndirect(offset);
+}
+
+static void EPOXY_CALLSPEC watch_glMemoryBarrier(GLbitfield barriers)
+{
+    if (barriers & GL_BUFFER_UPDATE_BARRIER_BIT) unordered = false;
+    count_glMemoryBarrier(barriers);
 }
 
 static void EPOXY_CALLSPEC watch_glGetTexImage(GLenum target, GLint level, GLenum format,
@@ -211,6 +238,9 @@ static void choose_wrappers(void)
     WATCH(glCopyBufferSubData);
     WATCH(glMapBufferRange);
     WATCH(glGetBufferSubData);
+    WATCH(glDispatchCompute);
+    WATCH(glDispatchComputeIndirect);
+    WATCH(glMemoryBarrier);
     WATCH(glGetTexImage);
     WATCH(glGetQueryObjectui64v);
     WATCH(glFinish);
@@ -225,6 +255,7 @@ static void forget(void)
     memset(written, 0, sizeof written);
     memset(fences, 0, sizeof fences);
     frames = passed = 0;
+    unordered = false;
 }
 
 void gl_count_start(void)
@@ -285,11 +316,13 @@ void gl_count_print(FILE *stream)
     }
     order_by = calls;
     qsort(order, CALLS, sizeof *order, by_count);
-    fprintf(stream, "%.4g calls a frame, %.3g blocking, %.3g late reads, %.3g waits\n",
-            (double)(last->all.calls - first->all.calls) / n,
-            (double)(last->all.blocking - first->all.blocking) / n,
-            (double)(last->all.late - first->all.late) / n,
-            (double)(last->all.waits - first->all.waits) / n);
+    fprintf(
+        stream,
+        "%.4g calls a frame, %.3g blocking, %.3g late reads, %.3g waits, %llu unordered in all\n",
+        (double)(last->all.calls - first->all.calls) / n,
+        (double)(last->all.blocking - first->all.blocking) / n,
+        (double)(last->all.late - first->all.late) / n,
+        (double)(last->all.waits - first->all.waits) / n, (unsigned long long)now.all.unordered);
     for (int i = 0; i < CALLS && calls[order[i]]; ++i)
         fprintf(stream, "%8.4g %s\n", (double)calls[order[i]] / n, NAMES[order[i]]);
 }

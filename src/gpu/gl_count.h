@@ -15,6 +15,10 @@ typedef struct GlCounts {
     uint64_t blocking;
     uint64_t late;
     uint64_t waits; // for fences that had not passed when they were checked
+    // Reads of buffers after shaders have run, without
+    // glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT) between. A GPU may then return what was there
+    // before; a CPU driver does not.
+    uint64_t unordered;
 } GlCounts;
 
 // Installs the counters, all 0. A context must be current, and stay current while they are

@@ -88,6 +88,7 @@ void *gpu_buffer_read(const GpuBuffer *buffer)
 {
     void *content = malloc((size_t)buffer->size + 1);
     if (!content) return NULL;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_COPY_READ_BUFFER, buffer->buffer);
     glGetBufferSubData(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)buffer->size, content);
     if (glGetError() == GL_NO_ERROR) return content;

@@ -34,8 +34,8 @@ void gpu_buffer_destroy(GpuBuffer *buffer);
 // Sets every 4 bytes to `word`. Only queues GPU work.
 void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word);
 
-// A copy of the content, which the caller frees. NULL when memory is short, here or in the driver,
-// or if an earlier call left an error. Waits for the GPU.
+// A copy of the content after all earlier passes, which the caller frees. NULL when memory is
+// short, here or in the driver, or if an earlier call left an error. Waits for the GPU.
 void *gpu_buffer_read(const GpuBuffer *buffer);
 
 // Binds the buffer as storage at a BIND_..._OUT point, or its texture at a BIND_ texture unit

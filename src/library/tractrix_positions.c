@@ -110,7 +110,6 @@ static Result read_positions(void *data, Error *error)
     if (!map->position)
         return error_set(error, RESULT_FAILED, "no memory for %u vertices", map->vertex_count);
     const uint32_t *first = map->first;
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < hair->batch_count; first += hair->batches[i++].strand_count)
         TRY(read_batch(map, &hair->batches[i], first, error));
     return gpu_check("reading positions", error);

@@ -198,7 +198,6 @@ static Result refuse_memory(const HairBatch *batch, Error *error)
 
 Result hair_read_positions(const Hair *hair, float (*positions)[3], Error *error)
 {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         const HairBatch *batch = &hair->batches[i];
         Float4 *read = gpu_buffer_read(&batch->position);

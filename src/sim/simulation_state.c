@@ -198,7 +198,6 @@ Result simulation_state_save(Simulation *simulation, Bytes *state, Error *error)
     char *data = malloc(room);
     Archive archive = {.stream = data ? fmemopen(data, room, "w") : NULL};
     bool good = archive.stream && pass_numbers(&archive, simulation, &list);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < list.count && good; ++i)
         good = write_buffer(&archive, list.buffers[i]);
     if (archive.stream) {

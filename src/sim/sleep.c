@@ -119,7 +119,7 @@ static void check(Sleep *sleep)
         gpu_buffer_bind_storage(&sleep->batches[i].calm, BIND_CALM_OUT);
         step_pass_run(&sleep->pass, &params, sizeof params, hair->strand_count);
     }
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void sleep_check(Sleep *sleep, const Solver *solver)

@@ -149,6 +149,7 @@ static void cast_shadows(Shade *shade, const LaneBaseScene *base)
     assert_int_equal(studio.hair[0].batch_count, 1);
     *shade = (Shade){.position = malloc((size_t)batch->position.size)};
     assert_non_null(shade->position);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, batch->position.buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)batch->position.size,
                        shade->position);

@@ -37,7 +37,6 @@ static float *make_levels(const float *nearest, int columns, int rows)
     NEEDED(gpu_buffer_create(&cull.nearest, limits, "tiles", size, nearest, 0, error));
     NEEDED(gpu_buffer_create(&cull.levels, limits, "levels", size, NULL, GL_R32F, error));
     NEEDED(cull_make_levels(&cull, error));
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     float *levels = gpu_buffer_read(&cull.levels);
     assert_non_null(levels);
     cull_destroy(&cull);

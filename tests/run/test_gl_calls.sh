@@ -39,4 +39,21 @@ calls 700 0 --raster quads --frames 4 -o "$work/%d.exr"
 claim "blocks read hair by mapping it, which costs a CPU driver nothing"
 calls 60 2 --raster blocks --frames 4 -o "$work/blocks/%d.png"
 
+# ordered ARGUMENT...: every read of a buffer is ordered after the shaders that wrote it.
+ordered() {
+    run 0 "$@"
+    if grep -q ' calls a frame.* 0 unordered in all$' "$work/err"; then good; else bad "unordered reads: $*: $(grep 'calls a frame' "$work/err")"; fi
+}
+
+claim "what a shader writes is read after a barrier; GPUs return older content otherwise"
+"$bin/tractrix-gen" fur assets/ball.obj --count 200 -o "$work/few.tfx" >/dev/null 2>&1
+small="$work/few.tfx --followers 0 -q --size 96x72 --frames 2 --preroll 0"
+export XDG_CACHE_HOME="$work/cache"
+# shellcheck disable=SC2086 # words
+{
+    ordered $small --raster blocks --algo split --colliders sphere:0,0,0,0.02 --stats "$work/split.json" --export "$work/split_%d.tfx" -o "$work/split/%d.png"
+    ordered $small --raster compute --look plain --shadow dom --volume 0.5 --cache "$work/volume.cache" --resume -o "$work/volume/%d.png"
+    ordered $small --raster quads --look plain --mesh assets/ball.obj --sdf-resolution 16 -o "$work/mesh/%d.png"
+}
+
 finish

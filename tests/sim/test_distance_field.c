@@ -89,11 +89,8 @@ static double mesh_distance(const Mesh *mesh, const Point p)
 
 static float *read_values(const DistanceField *field)
 {
-    size_t size = distance_field_count(field) * sizeof(float);
-    float *values = malloc(size);
+    float *values = gpu_buffer_read(&field->values);
     assert_non_null(values);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, field->values.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, values);
     return values;
 }
 

@@ -373,6 +373,7 @@ static Strands make_mixed(void)
 
 static void read_buffer(const GpuBuffer *buffer, void *data)
 {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)buffer->size, data);
 }

@@ -123,7 +123,6 @@ static Float4 *draw(const Stage *stage, double style)
     NEEDED(pose_create(&pose, fixture_gpu(), &options, error));
     pose_write(&pose, &stage->batch, &stage->segments, LEAD, &stage->head);
     pose_destroy(&pose);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     Float4 *positions = gpu_buffer_read(&stage->batch.position);
     assert_non_null(positions);
     return positions;

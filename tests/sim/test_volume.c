@@ -78,7 +78,6 @@ static const GpuBuffer *velocity_buffer(World *world)
 
 static Float4 *read_velocities(World *world)
 {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     Float4 *v = gpu_buffer_read(velocity_buffer(world));
     assert_non_null(v);
     return v;

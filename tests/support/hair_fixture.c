@@ -137,12 +137,9 @@ void fixture_step(HairFixture *fixture)
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]
 {
     const HairBatch *hair = &fixture->hair.batches[batch];
-    size_t size = (size_t)hair->vertex_count * hair_slots(hair) * sizeof(float[4]);
-    float(*positions)[4] = malloc(size);
-    assert_non_null(positions);
     solver_pose(&fixture->solver, &fixture->step.head);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->position.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, positions);
+    float(*positions)[4] = gpu_buffer_read(&hair->position);
+    assert_non_null(positions);
     return positions;
 }
 

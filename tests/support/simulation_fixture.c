@@ -85,10 +85,8 @@ static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
 
 static float (*read_batch(const HairBatch *batch))[4]
 {
-    float(*positions)[4] = malloc((size_t)batch->position.size);
+    float(*positions)[4] = gpu_buffer_read(&batch->position);
     assert_non_null(positions);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, batch->position.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)batch->position.size, positions);
     return positions;
 }
 
