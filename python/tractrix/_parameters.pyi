@@ -313,8 +313,8 @@ class Parameters(TypedDict, total=False):
     shadow_size: int
     """width and height of a light's shadow map [64 to 2048 px; default 512]"""
     shadow_strands: int
-    """minimum number of strands that represent all hair in shadow maps of --raster blocks; 0: use all strands [0 to
-    1000000; default 20000]"""
+    """minimum number of strands, for each body, that represent all hair in shadow maps of --raster blocks; 0: use all
+    strands [0 to 1000000; default 20000]"""
     shadow_opacity: float
     """share of the light that a fibre blocks [0 to 1; default 1]"""
     shadow_spacing: float
