@@ -282,7 +282,8 @@ static void hair_shows_its_paint(void **state)
         assert_int_equal(studio_pixel(&studio, 64 - 30, 64)[0], 255);
         assert_int_equal(studio_pixel(&studio, 64 - 30, 64)[1], 0);
         assert_int_equal(studio_pixel(&studio, 64 - 10, 64)[1], 255);
-        assert_int_equal(studio_pixel(&studio, 64 + 10, 64)[2], 188); // half of the light
+        // half of the light
+        assert_true(abs(studio_pixel(&studio, 64 + 10, 64)[2] - 188) < studio_rounding(&studio));
         assert_int_equal(studio_pixel(&studio, 64 + 10 + 3, 64)[2], 0);
         assert_int_equal(studio_pixel(&studio, 64 + 30 + 3, 64)[2], 255);
         strands_destroy(&strands);

@@ -17,6 +17,9 @@
 
 #define error library_error
 
+// With a CPU driver: a GPU's driver has tables and threads of its own that grow.
+static const TractrixDeviceOptions SOFTWARE = {.size = sizeof SOFTWARE, .software = true};
+
 enum { WINDOWS = 5, SCENES = 500, SIMULATIONS = 20, DEVICES = 5, LEAK = 8 };
 
 static int count_entries(const char *path)
@@ -81,7 +84,7 @@ static void use_device(TractrixDevice *unused, int round)
 {
     TractrixDevice *device;
     (void)unused;
-    WELL(tractrix_device_open(&device, NULL, &error));
+    WELL(tractrix_device_open(&device, &SOFTWARE, &error));
     use_simulation(device, 2 * round);
     tractrix_device_destroy(device);
 }
@@ -141,7 +144,7 @@ static void simulations_leave_nothing(void **state)
 {
     TractrixDevice *device;
     (void)state;
-    WELL(tractrix_device_open(&device, NULL, &error));
+    WELL(tractrix_device_open(&device, &SOFTWARE, &error));
     measure(use_simulation, device, SIMULATIONS, 1);
     tractrix_device_destroy(device);
 }
@@ -162,8 +165,8 @@ static void the_last_device_ends_its_threads(void **state)
     use_device(NULL, 0);
     int before = count_entries("/proc/self/task");
     tractrix_set_threads(4);
-    WELL(tractrix_device_open(&first, NULL, &error));
-    WELL(tractrix_device_open(&last, NULL, &error));
+    WELL(tractrix_device_open(&first, &SOFTWARE, &error));
+    WELL(tractrix_device_open(&last, &SOFTWARE, &error));
     use_simulation(last, 0);
     tractrix_device_destroy(first);
     assert_true(count_entries("/proc/self/task") > before + 1);
@@ -191,5 +194,11 @@ int main(int count, char **arguments)
         execv("/proc/self/exe", arguments);
         return 1;
     }
+    TractrixDevice *device;
+    if (tractrix_device_open(&device, &SOFTWARE, &error) == TRACTRIX_NO_GL) {
+        printf("skipped: %s\n", error.text);
+        return 77;
+    }
+    tractrix_device_destroy(device);
     return cmocka_run_group_tests_name("library_growth", tests, NULL, NULL);
 }

@@ -16,8 +16,11 @@
 // per frame of 1/60 s.
 //
 // Measured, 60, 120 and 480 Hz: 0.0048, 0.0017 and 0.00015 (hybrid), 0.00014 (emulation), as in
-// their double-precision forms. Means: chain 0.019, 0.0096 and 0.0048 as the reference
+// their double-precision forms. Means: chain 0.018, 0.0098 and 0.0050 as the reference
 // implementation; hybrid 0.0189, 0.0080, 0.0036; emulation 0.0190, 0.0081, 0.0035.
+//
+// ROUNDED: what operations that round like a CPU's add to a mean, at most. A GPU's (H200) added
+// 4e-5 to chain's.
 static const struct {
     const char *algo;
     double released, ratio, mean[3];
@@ -26,6 +29,7 @@ static const struct {
     {"hybrid", 0.003, 10, {0.02, 0.009, 0.004}},
     {"emulation", 0.003, 10, {0.02, 0.009, 0.004}},
 };
+static const double ROUNDED = 2e-5;
 enum { SOLVER_COUNT = sizeof SOLVERS / sizeof *SOLVERS };
 
 static void require(bool holds, int solver, const char *what, double value)
@@ -55,7 +59,8 @@ static void mean_errors_fall_with_the_step(void **state)
     for (int i = 0; i < SOLVER_COUNT; ++i)
         for (int k = 0; k < 3; ++k) {
             double error = reference_mean_error(SOLVERS[i].algo, "", 1 << k, NULL);
-            require(error < SOLVERS[i].mean[k], i, "mean error of", error);
+            double most = SOLVERS[i].mean[k] + (fixture_rounding() - 1) * ROUNDED;
+            require(error < most, i, "mean error of", error);
         }
 }
 

@@ -31,6 +31,11 @@ void studio_set_options(Studio *studio, const RendererOptions *options)
                              renderer_channels(&studio->renderer), options->kind, error));
 }
 
+int studio_rounding(const Studio *studio)
+{
+    return studio->gpu.software ? 1 : 2;
+}
+
 void studio_clear(Studio *studio)
 {
     for (uint32_t i = 0; i < studio->count; ++i) {

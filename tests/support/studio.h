@@ -48,6 +48,10 @@ void studio_view(View *view, int width, int height);
 // Pixel (column, row) of the image, row 0 on top.
 const uint8_t *studio_pixel(const Studio *studio, int x, int y);
 
+// The rounding errors of half floats and of levels, in units of a CPU driver's: 1, and 2 on a GPU,
+// which may round towards zero (an NVIDIA H200 does).
+int studio_rounding(const Studio *studio);
+
 // A copy of the last picture's bytes. The caller frees it.
 uint8_t *studio_copy(const Studio *studio, size_t *size);
 
