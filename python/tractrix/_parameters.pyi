@@ -372,8 +372,8 @@ class Parameters(TypedDict, total=False):
     oit_layers: int
     """fragments per pixel that --oit abuffer sorts; 0: 8, or 16 with --samples [0 to 64; default 0]"""
     least_seen: float
-    """--raster blocks skips work below this visibility, as a share of a pixel: ribbons seen less are not shaded, pixels
-    that let less than twice as much light through are finished; 0: off [0 to 0.5; default 0.001]"""
+    """--raster blocks skips work below this share of a pixel: ribbons seen less are not shaded, up to 7 % of a pixel's
+    hair, pixels that let less than twice as much light through are finished; 0: off [0 to 0.5; default 0.01]"""
     thickness: Numbers
     """of all vertices, one strand behind the other, relative to its mean, which `radius` gives"""
     uv: Numbers

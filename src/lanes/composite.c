@@ -21,6 +21,10 @@ enum {
     KNOWN = 1024, // slots of a hash table of wanted points
 };
 
+// The share of a pixel's hair that may be skipped: fine hair must not vanish where each of its many
+// ribbons is hardly seen.
+static const float MOST_SKIPPED = 0.07f;
+
 // Column and row of a cell's pixels.
 static const float LANE_X[CELL_PIXELS] = {0, 1, 0, 1, 0, 1, 0, 1},
                    LANE_Y[CELL_PIXELS] = {0, 0, 1, 1, 2, 2, 3, 3};
@@ -251,14 +255,21 @@ SIMD_INLINE float coverage(const Batch *b, int i, float x, float y, float along)
     return b->factor[i] * covered * clamp_share(simd_min(first, last));
 }
 
+// Pixels with a transmittance below this limit count as opaque.
+SIMD_INLINE float through_limit(float least)
+{
+    return simd_max(2 * least, RIBBON_LEAST_THROUGH);
+}
+
 // Blends ribbon i behind the cell's content, without colours: `laid` gets its visible share in each
 // pixel. x, y: the cell's first pixel in the block. Bit 0 of the result: more than `least` of the
-// ribbon is visible in some pixel. Bit 1: in some pixel the transmittance is still more than
-// `open`.
+// ribbon is visible in some pixel, or any of it where much of the hair was skipped. Bit 1: in some
+// pixel the transmittance is still more than through_limit(least).
 SIMD_INLINE int lay_under(const Batch *restrict b, int i, float x, float y, BlockForm form,
-                          float least, float open, Cell *restrict cell,
-                          const float *restrict hidden, Laid *restrict laid)
+                          float least, Cell *restrict cell, const float *restrict hidden,
+                          const float *restrict skipped, Laid *restrict laid)
 {
+    float open = through_limit(least);
     int seen = 0, through = 0;
     for (int k = 0; k < CELL_PIXELS; ++k) {
         float along = clamp_share(linear(&b->along, i, x + LANE_X[k], y + LANE_Y[k]));
@@ -266,9 +277,9 @@ SIMD_INLINE int lay_under(const Batch *restrict b, int i, float x, float y, Bloc
         if (form == BLOCK_OVER_MESH)
             alpha = b->near[i] + along * b->near_change[i] >= hidden[k] ? alpha : 0;
         alpha *= cell->through[k];
-        cell->through[k] -= alpha;
         laid->alpha[k] = alpha, laid->along[k] = along;
-        seen |= alpha > least;
+        seen |= alpha > (skipped[k] < MOST_SKIPPED * (1 - cell->through[k]) ? least : 0);
+        cell->through[k] -= alpha;
         through |= cell->through[k] > open;
     }
     return seen | through << 1;
@@ -348,18 +359,12 @@ SIMD_INLINE void shade(const Ribbons *ribbons, SimdLevel level, int size, Compos
     }
 }
 
-// Pixels with a transmittance below this limit count as opaque.
-static float through_limit(float least_seen)
-{
-    return simd_max(2 * least_seen, RIBBON_LEAST_THROUGH);
-}
-
 SIMD_INLINE void draw(const Block *block, BlockForm form, const Ribbons *ribbons, SimdLevel level,
                       int size, int count, CompositeScratch *scratch)
 {
     Touch *touches = scratch->touches;
     Batch *batch = &scratch->batch;
-    float least = ribbons->least_seen, open = through_limit(least);
+    float least = ribbons->least_seen;
     int laid = 0;
     for (int t = 0; t < count; ++t) {
         int i = touches[t].ribbon, c = touches[t].cell;
@@ -368,8 +373,8 @@ SIMD_INLINE void draw(const Block *block, BlockForm form, const Ribbons *ribbons
         Laid *own = &scratch->laid[laid];
         int found = form == BLOCK_NEAREST
                         ? keep_nearest(batch, i, x, y, &block->cells[c], block->hidden[c], own)
-                        : lay_under(batch, i, x, y, form, least, open, &block->cells[c],
-                                    block->hidden[c], own);
+                        : lay_under(batch, i, x, y, form, least, &block->cells[c], block->hidden[c],
+                                    scratch->skipped[c], own);
         touches[laid] = touches[t];
         batch->seen[i] |= found & 1;
         scratch->open[c] &= found >> 1;

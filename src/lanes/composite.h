@@ -15,7 +15,8 @@ typedef struct Ribbons {
     const ScreenPoint *points;
     Shader shader;
     float least_seen; // share of a pixel: ribbons of which less is visible are not shaded but get
-                      // the colour of the others; twice that share may be added for what is behind
+                      // the colour of the others, up to 7 % of the pixel's hair; twice that
+                      // share may be added for what is behind
 } Ribbons;
 
 // The memory that a thread needs.

@@ -250,7 +250,7 @@ static double sum_light(void)
 }
 
 // Ribbons that are not shaded get the mean colour of the others; otherwise 1.1 % of the light would
-// be lost. Pixels without other ribbons, at the edges of single ribbons, lose it.
+// be lost.
 static void light_of_what_is_hardly_seen_is_made_up_for(void **state)
 {
     (void)state;
@@ -262,6 +262,21 @@ static void light_of_what_is_hardly_seen_is_made_up_for(void **state)
         sums[least] = sum_light();
     }
     if (!(fabs(sums[1] / sums[0] - 1) < 0.004)) fail_msg("%g of the light", sums[1] / sums[0]);
+}
+
+// No ribbon of this hair covers more than a hundredth of a pixel: if all that are hardly seen were
+// left out, nothing would be seen.
+static void fine_hair_does_not_vanish(void **state)
+{
+    (void)state;
+    double sums[2];
+    make_ribbons(11, 600, 0.02, 0.5);
+    for (int least = 0; least < 2; ++least) {
+        clear_block(0);
+        composite(BLOCK_OPEN, 600, least ? 1 / 64.0f : 0);
+        sums[least] = sum_light();
+    }
+    if (!(fabs(sums[1] / sums[0] - 1) < 0.01)) fail_msg("%g of the light", sums[1] / sums[0]);
 }
 
 static void what_lies_behind_the_mesh_is_hidden(void **state)
@@ -369,6 +384,7 @@ int main(void)
         cmocka_unit_test(skipped_ribbons_change_a_pixel_by_at_most_a_1024th),
         cmocka_unit_test(ribbons_that_are_hardly_seen_look_like_the_others),
         cmocka_unit_test(light_of_what_is_hardly_seen_is_made_up_for),
+        cmocka_unit_test(fine_hair_does_not_vanish),
         cmocka_unit_test(what_lies_behind_the_mesh_is_hidden),
         cmocka_unit_test(what_is_all_behind_the_mesh_changes_nothing),
         cmocka_unit_test(the_nearest_hides_all_behind_it),
