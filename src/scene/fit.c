@@ -139,6 +139,18 @@ static double room_to_search(const Framing *framing)
     return room;
 }
 
+// Whether the frames look from all sides across these axes. From one side alone (a single frame of
+// a turntable), every step of the target towards the eye would seem to bring the camera closer.
+static bool looks_from_all_sides(const Fit *fit, vec3 across, vec3 ahead)
+{
+    vec3 sum = {0};
+    for (int frame = 0; frame < fit->frame_count; ++frame)
+        for (int i = 0; i < 2; ++i) // the slopes of right and left cancel out
+            glm_vec3_add(sum, (float *)fit->frames[frame][i].normal, sum);
+    float mean = 0.5f / (float)fit->frame_count;
+    return mean * hypotf(glm_vec3_dot(sum, across), glm_vec3_dot(sum, ahead)) < 0.5f;
+}
+
 // For a whole turn, moves the target to the axis for which left and right need the smallest
 // distance, so that the hair turns about its middle. Top and bottom are not considered there: they
 // would prefer an axis that moves high hair away from the camera. Then finds the best height.
@@ -154,7 +166,8 @@ static void find_target(const Fit *fit, const Scene *scene, const Framing *frami
     Search beside = {.fit = fit, .sides = 2, .reach = room_to_search(framing)}, height = beside;
     put_axis(&beside, across);
     put_axis(&beside, ahead);
-    if (fabsf(scene->run.turntable) >= 360) search_along(&beside, 0, target, target);
+    if (fabsf(scene->run.turntable) >= 360 && looks_from_all_sides(fit, across, ahead))
+        search_along(&beside, 0, target, target);
     height.sides = 4;
     put_axis(&height, up);
     search_along(&height, 0, target, target);

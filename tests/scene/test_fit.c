@@ -67,7 +67,7 @@ static void fit(Shot *shot, float radius)
     Error error;
     float points[POINTS][3];
     assert_int_equal(fit_create(&fit, &shot->scene, &shot->framing, &error), RESULT_OK);
-    for (int frame = 0; frame < FRAMES; ++frame) {
+    for (int frame = 0; frame < shot->scene.run.frames; ++frame) {
         points_of(shot, frame, points);
         fit_add(&fit, frame, (const float(*)[3])points, POINTS, radius);
     }
@@ -178,6 +178,28 @@ static void on_whole_turns_no_other_target_brings_the_camera_closer(void **state
     }
 }
 
+// One frame of a turntable, or several from the same side, look as they would without a turntable.
+static void a_single_view_of_a_turn_keeps_its_distance(void **state)
+{
+    (void)state;
+    for (int frames = 1; frames <= 2; ++frames) {
+        Shot turn, still;
+        open_shot(&turn);
+        open_shot(&still);
+        turn.scene.run.frames = still.scene.run.frames = frames;
+        turn.scene.run.turntable = 360 * (float)frames;
+        still.scene.run.turntable = 0;
+        fit(&turn, 0);
+        fit(&still, 0);
+        for (int k = 0; k < 3; ++k) {
+            assert_true(fabsf(turn.framing.eye[k] - still.framing.eye[k]) < 1e-4f);
+            assert_true(fabsf(turn.framing.target[k] - still.framing.target[k]) < 1e-4f);
+        }
+        close_shot(&turn);
+        close_shot(&still);
+    }
+}
+
 static void without_points_nothing_changes(void **state)
 {
     (void)state;
@@ -200,6 +222,7 @@ int main(void)
         cmocka_unit_test(points_touch_the_margin_and_never_cross_it),
         cmocka_unit_test(the_points_radius_and_a_zoom_are_counted_in),
         cmocka_unit_test(on_whole_turns_no_other_target_brings_the_camera_closer),
+        cmocka_unit_test(a_single_view_of_a_turn_keeps_its_distance),
         cmocka_unit_test(without_points_nothing_changes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
