@@ -3,6 +3,7 @@
 // floor or behind it; both lie over the background.
 //   MESH 1: there may be mesh in the pixel   EDGE_SAMPLES: samples of its depth
 //   FLOOR: see floor_light.glsl; 0: no floor
+//   BACKDROP: samples of a pixel's side if the environment is the background; 0: it is even
 #include "draw/draw.h"
 #include "draw/ray.glsl"
 #include "kernel/edge.h"
@@ -17,6 +18,9 @@
 layout(binding = BIND_MIDDLE_DEPTH) uniform sampler2D middle_depth;
 layout(binding = BIND_LIT) uniform sampler2D lit;
 layout(binding = BIND_EDGE_DEPTH) uniform sampler2DMS edge_depth;
+#endif
+#if BACKDROP
+layout(binding = BIND_BACKDROP) uniform samplerBuffer backdrop;
 #endif
 layout(location = 0) out vec4 base; // linear, premultiplied
 
@@ -67,6 +71,16 @@ void add_samples(ivec2 at, vec4 background)
 }
 #endif
 
+vec4 find_background()
+{
+#if BACKDROP
+    ivec2 at = ivec2(gl_FragCoord.xy) / BACKDROP;
+    return texelFetch(backdrop, at.y * (int(draw_params.width) / BACKDROP) + at.x);
+#else
+    return draw_params.background;
+#endif
+}
+
 void main()
 {
 #if FLOOR
@@ -79,9 +93,9 @@ void main()
         there > 0.0 ? edge_depth_at(draw_params.depth.x, draw_params.depth.y, along) : EDGE_NOWHERE;
 #endif
 #if MESH
-    add_samples(ivec2(gl_FragCoord.xy), draw_params.background);
+    add_samples(ivec2(gl_FragCoord.xy), find_background());
 #else
-    behind = draw_params.background;
+    behind = find_background();
 #endif
     base = front + behind;
 #if FLOOR

@@ -34,6 +34,7 @@
 #define BIND_LIT          5 // that surface's light
 #define BIND_MIDDLE_DEPTH 6 // depth of the mesh at pixel centres
 #define BIND_EDGE_DEPTH   7 // depths of the mesh at several samples a pixel
+#define BIND_BACKDROP     4 // vec4 a pixel: the environment as background; no surface is bound then
 #define BIND_TINT         8 // factors of the mesh's colour
 #define BIND_ONTO         9 // six vec4 a cell: the light of hair on skin, see kernel/onto.h
 

@@ -296,6 +296,8 @@ class Parameters(TypedDict, total=False):
     """factor of the light of --environment [0 to 1000000; default 1]"""
     environment_turn: float
     """angle by which --environment is turned about y, from -z towards -x [-1000000 to 1000000 deg; default 0]"""
+    environment_background: bool
+    """show --environment behind hair and mesh, instead of --background [default false]"""
     shadow: Literal["none", "approx", "dom"]
     """shadows of hair and mesh: approx (number of fibres estimated from the depth behind the first) or dom (deep
     opacity maps) [default dom]"""

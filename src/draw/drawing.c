@@ -247,6 +247,10 @@ static void find_boxes(Drawing *drawing, const RendererOptions *options, const D
     find_mesh_box(mesh, &drawing->draw, drawing->mesh_box);
     memcpy(drawing->base_box, drawing->mesh_box, sizeof drawing->base_box);
     add_floor_to_box(&options->floor, &drawing->draw, drawing->base_box);
+    if (options->backdrop)
+        memcpy(drawing->base_box,
+               (int[4]){0, 0, (int)drawing->draw.width, (int)drawing->draw.height},
+               sizeof drawing->base_box);
 }
 
 // A window's samples are those of the whole image shifted by its first sample: x' = x - first. With
@@ -404,6 +408,7 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Dra
 void drawing_destroy(Drawing *drawing)
 {
     scatter_tables_destroy(&drawing->tables);
+    backdrop_destroy(&drawing->backdrop);
     free(drawing->looks);
     *drawing = (Drawing){0};
 }

@@ -4,6 +4,7 @@
 // is a sample; pixels of the image are means of samples.
 #pragma once
 
+#include "draw/backdrop.h"
 #include "draw/drawn_mesh.h"
 #include "draw/look.h"
 #include "draw/renderer_options.h"
@@ -20,7 +21,8 @@ typedef struct Drawing {
     Look *looks; // [look_room], owned: one for each item
     uint32_t look_room;
     int mesh_box[4]; // samples: x, y lowest, highest; empty without a mesh
-    int base_box[4]; // box of mesh and floor together
+    int base_box[4]; // box of mesh and floor together; with a backdrop, of the whole image
+    Backdrop backdrop;
     ScatterTables tables;
 } Drawing;
 

@@ -19,6 +19,7 @@ static RendererOptions settle(const RendererOptions *asked)
         memcpy(options.background, (float[4]){0, 0, 0, 1}, 4 * sizeof(float));
         options.shadow.kind = SHADOW_NONE;
         options.floor.kind = FLOOR_NONE;
+        options.backdrop = false;
     }
     return options;
 }
@@ -144,6 +145,9 @@ static Result begin_frame(Renderer *renderer, const RenderFrame *frame, const Re
 
 static Result draw_window(Renderer *renderer, Image *image, Error *error)
 {
+    if (renderer->options.backdrop)
+        TRY(backdrop_find(&renderer->drawing.backdrop, renderer->frame.frame->ambient,
+                          &renderer->options, &renderer->drawing.draw, error));
     TRY(renderer->backend->shade(renderer->state, &renderer->frame, error));
     TRY(renderer->backend->composite(renderer->state, &renderer->frame, image, error));
     renderer->backend->count(renderer->state, &renderer->counts);

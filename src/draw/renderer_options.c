@@ -23,5 +23,7 @@ RendererOptions renderer_options_of(const RunParams *run)
                                           .spacing = run->shadow_spacing,
                                           .strands = run->shadow_strands}};
     memcpy(options.background, run->background, sizeof options.background);
+    options.backdrop = *run->environment && run->environment_background;
+    if (options.backdrop) options.background[3] = 1;
     return options;
 }

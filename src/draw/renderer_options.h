@@ -36,8 +36,9 @@ typedef struct RendererOptions {
     Raster raster;        // auto: blocks with CPU drivers, compute otherwise
     int width, height;    // px; images larger than a framebuffer are drawn as tiles
     float background[4];  // sRGB and opacity 0..1; below 1 the images have an alpha channel
-    float exposure;       // EV: factor 2^exposure of all light except the background's
-    Tone tone;            // tone curve of all light except the background's
+    bool backdrop;        // the environment is the background (backdrop.h); `background` is opaque
+    float exposure;       // EV: factor 2^exposure of all light except that of `background`
+    Tone tone;            // tone curve of all light except that of `background`
     ImageKind kind;       // of the images
     Aov aov;              // auxiliary image that replaces light, on black (docs/look.md)
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; if equal: depths in m

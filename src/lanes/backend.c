@@ -199,7 +199,8 @@ static Result scatter(void *state, const BackendFrame *frame, Error *error)
 
 static bool has_base(const Lanes *lanes, const BackendFrame *frame)
 {
-    return frame->mesh->mesh.triangle_count > 0 || lanes->options->floor.kind != FLOOR_NONE;
+    return frame->mesh->mesh.triangle_count > 0 || lanes->options->floor.kind != FLOOR_NONE ||
+           lanes->options->backdrop;
 }
 
 static Result draw_base(Lanes *lanes, const BackendFrame *frame, Error *error)
@@ -212,6 +213,8 @@ static Result draw_base(Lanes *lanes, const BackendFrame *frame, Error *error)
                                  .shadow = lanes->light.shadow,
                                  .grid = lanes->light.grid,
                                  .draw = &drawing->draw,
+                                 .backdrop = lanes->options->backdrop ? &drawing->backdrop : NULL,
+                                 .samples = lanes->options->samples,
                                  .mesh_box = drawing->mesh_box,
                                  .box = drawing->base_box};
     return lane_base_draw(&lanes->base, &scene, error);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "base/params.h"
+#include "draw/backdrop.h"
 #include "lanes/block.h"
 #include "lanes/light_grid.h"
 #include "lanes/mesh_raster.h"
@@ -26,6 +27,8 @@ typedef struct LaneBaseScene {
     const LaneShadow *shadow; // shadows on mesh and floor; NULL: none
     const LightGrid *grid;    // light that hair sends onto skin; NULL: none
     const DrawParams *draw;
+    const Backdrop *backdrop;  // NULL: an even background
+    int samples;               // of a pixel's side
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } LaneBaseScene;
 

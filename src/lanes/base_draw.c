@@ -116,13 +116,15 @@ typedef struct Finish {
     const LaneBase *base;
     BaseView view;
     BaseFloor floor;
-    int parts;
+    const Backdrop *backdrop;
+    int samples, parts;
 } Finish;
 
 // Values of 16 px: premultiplied sums of all samples in front of the floor and behind it, and the
 // depth.
 typedef struct Pixels {
     float front[4][W], behind[4][W], depth[W];
+    float background[4][W];
 } Pixels;
 
 // The 3 x 3 px around (x, y): depths at pixel centres and their addresses.
@@ -165,7 +167,7 @@ static void add_edge(const Finish *finish, int x, int y, const float z[MESH_EDGE
         float(*to)[W] = z[i] < floor_z ? pixels->front : pixels->behind;
         for (int c = 0; c < 4; ++c) {
             float shown = c == 3 ? 1 : base->lit[(size_t)c * plane + from];
-            to[c][k] += (mesh ? shown : finish->view.draw->background[c]) / MESH_EDGES;
+            to[c][k] += (mesh ? shown : pixels->background[c][k]) / MESH_EDGES;
         }
     }
 }
@@ -200,7 +202,7 @@ SIMD_INLINE void add_mesh(const Finish *finish, int x, int y, const float floor_
         const float *lit = base->lit + (size_t)(c < 3 ? c : 0) * plane + at;
         for (int k = 0; k < W; ++k) {
             float own = c < 3 ? lit[k] : 1;
-            own = middle[k] < EDGE_NOWHERE ? own : draw->background[c];
+            own = middle[k] < EDGE_NOWHERE ? own : pixels->background[c][k];
             pixels->front[c][k] = share[k] * own;
             pixels->behind[c][k] = own - share[k] * own;
         }
@@ -233,22 +235,38 @@ SIMD_INLINE void store(const LaneBase *base, int x, int y, const Pixels *pixels)
     memcpy(base->depth + at, pixels->depth, (size_t)count * sizeof *pixels->depth);
 }
 
+// The background in 16 px from (x, y) on.
+SIMD_INLINE void find_background(const Finish *finish, int x, int y, float background[4][W])
+{
+    const Backdrop *backdrop = finish->backdrop;
+    for (int c = 0; c < 4 && !backdrop; ++c)
+        for (int k = 0; k < W; ++k) background[c][k] = finish->view.draw->background[c];
+    for (int k = 0; k < W && backdrop; ++k) {
+        int column = (x + k) / finish->samples, last = backdrop->width - 1;
+        const float *light =
+            backdrop->light[(size_t)(y / finish->samples) * (size_t)backdrop->width +
+                            (size_t)(column < last ? column : last)];
+        for (int c = 0; c < 4; ++c) background[c][k] = light[c];
+    }
+}
+
 SIMD_INLINE void finish_pixels(const Finish *finish, int x, int y)
 {
     const LaneBase *base = finish->base;
     const MeshSurface *surface = &base->surface;
-    const float *background = finish->view.draw->background;
     int column = x - base->low[0], row = y - base->low[1];
     BaseFloorPoints floor;
     Pixels pixels;
     bool floored = finish->floor.kind != FLOOR_NONE &&
                    base_floor_find(&finish->floor, &finish->view, x, y, &floor);
     for (int k = 0; !floored && k < W; ++k) floor.depth[k] = EDGE_NOWHERE;
+    find_background(finish, x, y, pixels.background);
     if (column >= 0 && column < surface->pitch && row >= 0 && row < surface->height) {
         add_mesh(finish, column, row, floor.depth, &pixels);
     } else {
         for (int c = 0; c < 4; ++c)
-            for (int k = 0; k < W; ++k) pixels.front[c][k] = 0, pixels.behind[c][k] = background[c];
+            for (int k = 0; k < W; ++k)
+                pixels.front[c][k] = 0, pixels.behind[c][k] = pixels.background[c][k];
         for (int k = 0; k < W; ++k) pixels.depth[k] = EDGE_NOWHERE;
     }
     if (floored) {
@@ -288,8 +306,12 @@ static Result draw_all(LaneBase *base, const LaneBaseScene *scene, bool moved, E
                                     &base->surface, parts, error));
         base_mesh_light(base, scene, parts);
     }
-    Finish finish = {base, base_view(scene->draw),
-                     base_floor(scene->floor, scene->shadow, scene->draw), parts};
+    Finish finish = {base,
+                     base_view(scene->draw),
+                     base_floor(scene->floor, scene->shadow, scene->draw),
+                     scene->backdrop,
+                     scene->samples,
+                     parts};
     run_finish_rows(&finish, parts);
     return RESULT_OK;
 }

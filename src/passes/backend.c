@@ -58,6 +58,7 @@ static Result create(void **state, const BackendOptions *set, Error *error)
     if (!passes) return error_set(error, RESULT_FAILED, "no memory to draw hair");
     *passes = (Passes){.set = *set, .options = options, .gpu = set->gpu};
     passes->base.shading = options->mesh_shading;
+    passes->base.backdrop = options->backdrop ? options->samples : 0;
     Result result = render_target_create(&passes->target, options->width, options->height,
                                          options->samples, options->kind, error);
     THEN(result, create_rasters(passes, error));
@@ -199,6 +200,8 @@ static Result shade(void *state, const BackendFrame *frame, Error *error)
                              .shadow = &passes->shadow,
                              .light = hair_scatter_on_skin(&passes->scatter, frame),
                              .draw = &drawing->draw,
+                             .backdrop = &drawing->backdrop,
+                             .limits = &passes->gpu->limits,
                              .mesh_box = drawing->mesh_box,
                              .box = drawing->base_box};
     GpuTimer *timer = passes->set.timer.timer;

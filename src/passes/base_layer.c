@@ -24,7 +24,7 @@ static void set_floor(const Floor *floor)
 
 bool base_layer_is_needed(const BaseLayer *base, const Floor *floor)
 {
-    return base->mesh.triangle_count > 0 || floor->kind != FLOOR_NONE;
+    return base->mesh.triangle_count > 0 || floor->kind != FLOOR_NONE || base->backdrop;
 }
 
 static void forget(BaseLayer *base)
@@ -86,6 +86,7 @@ Result base_layer_build(BaseLayer *base, bool mesh, FloorKind floor, Shadow shad
                                     {"MESH", mesh},
                                     {"EDGE_SAMPLES", EDGE_SAMPLES},
                                     {"FLOOR", floor},
+                                    {"BACKDROP", base->backdrop},
                                     {NULL, 0}};
     GLuint *finish = &base->finish[mesh][floor];
     if (!base->vertex_array) glGenVertexArrays(1, &base->vertex_array);
@@ -178,7 +179,8 @@ static void finish(const BaseLayer *base, const BaseScene *scene, FloorKind floo
     glBindFramebuffer(GL_FRAMEBUFFER, target->base_frame);
     glClearBufferfv(GL_COLOR, 0, scene->draw->background);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
-    if (mesh || floor != FLOOR_NONE) {
+    if (mesh || floor != FLOOR_NONE || base->backdrop) {
+        if (base->backdrop) gpu_buffer_bind_texture(&base->backdrop_light, BIND_BACKDROP);
         bind_texture(BIND_MIDDLE_DEPTH, GL_TEXTURE_2D, target->middle_depth);
         bind_texture(BIND_LIT, GL_TEXTURE_2D, target->lit);
         bind_texture(BIND_EDGE_DEPTH, GL_TEXTURE_2D_MULTISAMPLE, target->edge_depth);
@@ -195,6 +197,18 @@ static void finish(const BaseLayer *base, const BaseScene *scene, FloorKind floo
     glBindFramebuffer(GL_FRAMEBUFFER, target->hair_frame);
 }
 
+static Result upload_backdrop(BaseLayer *base, const BaseScene *scene, Error *error)
+{
+    const Backdrop *backdrop = scene->backdrop;
+    if (base->backdrop_version == backdrop->version) return RESULT_OK;
+    gpu_buffer_destroy(&base->backdrop_light);
+    TRY(gpu_buffer_create(&base->backdrop_light, scene->limits, "the background",
+                          (int64_t)backdrop->width * backdrop->height * 16, backdrop->light,
+                          GL_RGBA32F, error));
+    base->backdrop_version = backdrop->version;
+    return RESULT_OK;
+}
+
 static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarget *target,
                        bool moved, GpuTimer *timer, Error *error)
 {
@@ -204,7 +218,8 @@ static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarg
     base_layer_count(base, scene->draw->light_count, scene->shadow->params.maps,
                      is_wide(scene->draw), scene->light != NULL);
     if (mesh) TRY(base_layer_build_light(base, shadow, error));
-    if (mesh || seen) TRY(base_layer_build(base, mesh, floor, shadow, error));
+    if (mesh || seen || base->backdrop) TRY(base_layer_build(base, mesh, floor, shadow, error));
+    if (base->backdrop) TRY(upload_backdrop(base, scene, error));
     gpu_timer_begin(timer, "draw_mesh");
     if (moved) draw_surfaces(base, scene, target);
     light_mesh(base, scene, target);
@@ -240,6 +255,7 @@ Result base_layer_draw(BaseLayer *base, const BaseScene *scene, const RenderTarg
 void base_layer_destroy(BaseLayer *base)
 {
     render_mesh_destroy(&base->mesh);
+    gpu_buffer_destroy(&base->backdrop_light);
     forget(base);
     if (base->vertex_array) glDeleteVertexArrays(1, &base->vertex_array);
     *base = (BaseLayer){0};

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/params.h"
+#include "draw/backdrop.h"
 #include "gpu/gpu_timer.h"
 #include "gpu/shader.h"
 #include "passes/light_passes.h"
@@ -20,6 +21,10 @@
 typedef struct BaseLayer {
     RenderMesh mesh;
     MeshShading shading;        // of the mesh; does not change
+    int backdrop;               // samples of a pixel's side if the environment is the background; 0
+                                // if it is even; does not change
+    GpuBuffer backdrop_light;   // vec4 a pixel
+    uint64_t backdrop_version;  // Backdrop.version of it
     GLuint light;               // program that lights the mesh
     GLuint finish[2][3];        // programs: with a mesh, and by FloorKind
     int light_count, map_count; // numbers for which these programs were compiled
@@ -35,13 +40,15 @@ typedef struct BaseLayer {
 // Input for an image. Boxes are in samples: x, y lowest, highest; outside of them is background.
 typedef struct BaseScene {
     const Floor *floor;
-    const Shadows *shadow;     // shadows on mesh and floor, bound
-    const LightPasses *light;  // light that hair sends onto the mesh; NULL: none
-    const DrawParams *draw;    // uploaded
+    const Shadows *shadow;    // shadows on mesh and floor, bound
+    const LightPasses *light; // light that hair sends onto the mesh; NULL: none
+    const DrawParams *draw;   // uploaded
+    const Backdrop *backdrop; // the environment as background
+    const GpuLimits *limits;
     const int *mesh_box, *box; // [4]: of the mesh, of mesh and floor
 } BaseScene;
 
-// Whether there is mesh or floor.
+// Whether there is a mesh, a floor or a backdrop.
 bool base_layer_is_needed(const BaseLayer *base, const Floor *floor);
 
 // Sets the number of lights and shadow maps, whether lights have a radius, and whether hair sends

@@ -78,6 +78,7 @@ static Scene meter_scene(const Scene *scene, Aov aov)
         if (run->size[k] < 1) run->size[k] = 1;
     }
     memset(run->background, 0, sizeof run->background);
+    run->environment_background = false;
     run->aov = aov;
     run->exposure = (AutoFloat){0};
     run->tone_map = TONE_NONE;

@@ -157,6 +157,9 @@ static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets
     if (assets->environment.parts)
         *hash = add_array(*hash, assets->environment.parts,
                           ENVIRONMENT_PARTS * sizeof *assets->environment.parts);
+    if (assets->environment.image.pixels)
+        *hash = add_array(*hash, assets->environment.image.pixels,
+                          image_size(&assets->environment.image));
     for (uint32_t b = 0; b < scene->body_count; ++b) {
         *hash = add_mesh(*hash, &assets->meshes[b]);
         if (scene->bodies[b].shape)

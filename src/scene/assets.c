@@ -212,7 +212,8 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
         TRY(load_body(&load, error));
     }
     if (*scene->run.environment)
-        TRY(environment_read(&assets->environment, scene->run.environment, error));
+        TRY(environment_read(&assets->environment, scene->run.environment,
+                             scene->run.environment_background, error));
     return RESULT_OK;
 }
 

@@ -72,6 +72,7 @@ CONDITION(guesses_shadows, scene->run.shadow == SHADOW_APPROX)
 CONDITION(has_floor, scene->run.floor != FLOOR_NONE)
 CONDITION(has_matt_floor, scene->run.floor == FLOOR_PLANE)
 CONDITION(has_environment, *scene->run.environment)
+CONDITION(has_plain_background, !scene->run.environment_background)
 CONDITION(has_sky, !*scene->run.environment)
 CONDITION(has_look_lights, !scene->own_lights && !*scene->run.environment)
 CONDITION(turns, scene->run.turntable != 0)
@@ -123,7 +124,9 @@ static const struct {
     {"follow follower_radius tip_separation clump", follows, "--followers is 0"},
     {"export_followers", exports, "there is no --export"},
     {"margin", frames_hair, "--eye is given"},
-    {"environment_strength environment_turn", has_environment, "there is no --environment"},
+    {"environment_strength environment_turn environment_background", has_environment,
+     "there is no --environment"},
+    {"background", has_plain_background, "--environment-background is given"},
     {"light_radius", has_look_lights, "the scene or --environment replaces the lights of the look"},
     {"sky ground", has_sky, "--environment is given"},
     {"turn_lights ease_in ease_out", turns, "there is no --turntable"},

@@ -63,7 +63,7 @@ Result environment_create(Environment *environment, const Image *image, Error *e
     return RESULT_OK;
 }
 
-Result environment_read(Environment *environment, const char *path, Error *error)
+Result environment_read(Environment *environment, const char *path, bool keep, Error *error)
 {
     Image image;
     *environment = (Environment){0};
@@ -79,13 +79,17 @@ Result environment_read(Environment *environment, const char *path, Error *error
                            "as wide as high",
                            path, image.width, image.height);
     THEN(result, environment_create(environment, &image, error));
-    image_destroy(&image);
+    if (result == RESULT_OK && keep)
+        environment->image = image;
+    else
+        image_destroy(&image);
     return result;
 }
 
 void environment_destroy(Environment *environment)
 {
     free(environment->parts);
+    image_destroy(&environment->image);
     *environment = (Environment){0};
 }
 
@@ -96,6 +100,37 @@ static void to_world(const EnvironmentPart *part, const EnvironmentAxes *axes, f
     for (int k = 0; k < 3; ++k)
         way[k] = part->way[0] * axes->axis[0][k] + part->way[1] * axes->axis[1][k] +
                  part->way[2] * axes->axis[2][k];
+}
+
+// The pixel before `at` (px from the middle of the first pixel) and the weight of the next.
+static int find_pixel(float at, float *weight)
+{
+    float whole = floorf(at);
+    *weight = at - whole;
+    return (int)whole;
+}
+
+void environment_look(const Environment *environment, const EnvironmentAxes *axes,
+                      const float way[3], float light[3])
+{
+    const Image *image = &environment->image;
+    const float *pixels = (const float *)(const void *)image->pixels;
+    float own[3], weight[2];
+    for (int k = 0; k < 3; ++k)
+        own[k] = axes->axis[k][0] * way[0] + axes->axis[k][1] * way[1] + axes->axis[k][2] * way[2];
+    float turn = atan2f(own[0], -own[2]), down = atan2f(hypotf(own[0], own[2]), own[1]);
+    int width = image->width, last = image->height - 1,
+        x = find_pixel((turn / (2 * (float)M_PI) + 0.5f) * (float)width - 0.5f, &weight[0]),
+        y = find_pixel(down / (float)M_PI * (float)image->height - 0.5f, &weight[1]);
+    for (int c = 0; c < 3; ++c) light[c] = 0;
+    for (int q = 0; q < 4; ++q) {
+        int column = (x + (q & 1) + width) % width, row = y + (q >> 1);
+        row = row < 0 ? 0 : row > last ? last : row;
+        float share = (q & 1 ? weight[0] : 1 - weight[0]) * (q >> 1 ? weight[1] : 1 - weight[1]);
+        const float *pixel =
+            pixels + (size_t)image->channels * ((size_t)row * (size_t)width + (size_t)column);
+        for (int c = 0; c < 3; ++c) light[c] += share * fmaxf(pixel[c], 0);
+    }
 }
 
 static void find_basis(const float n[3], double basis[ENVIRONMENT_TERMS])

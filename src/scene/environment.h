@@ -21,11 +21,12 @@ typedef struct EnvironmentPart {
 // A zeroed struct is empty.
 typedef struct Environment {
     EnvironmentPart *parts; // [ENVIRONMENT_PARTS] owned; NULL if there is none
+    Image image;            // owned; empty unless it is kept
 } Environment;
 
-// Reads an .exr or .pfm file. RESULT_BAD_INPUT with path and reason, also if the image is not twice
-// as wide as high; RESULT_FAILED when memory is short.
-Result environment_read(Environment *environment, const char *path, Error *error);
+// Reads an .exr or .pfm file, and keeps its image if `keep`. RESULT_BAD_INPUT with path and reason,
+// also if the image is not twice as wide as high; RESULT_FAILED when memory is short.
+Result environment_read(Environment *environment, const char *path, bool keep, Error *error);
 
 // Averages the image over each part. `image`: an IMAGE_FLOAT of any size; negative light counts as
 // 0. RESULT_FAILED when memory is short.
@@ -36,6 +37,11 @@ void environment_destroy(Environment *environment);
 typedef struct EnvironmentAxes {
     float axis[3][3];
 } EnvironmentAxes;
+
+// The radiance from the direction `way` (world, of any length but 0), linear RGB: interpolated
+// between pixels of the image, which must be kept. Negative light counts as 0.
+void environment_look(const Environment *environment, const EnvironmentAxes *axes,
+                      const float way[3], float light[3]);
 
 // The light of a white matt surface as a function of its unit normal (x, y, z), a polynomial of the
 // second degree (Ramamoorthi and Hanrahan, SIGGRAPH 2001): the sum of these terms, linear RGB,

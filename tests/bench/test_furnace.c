@@ -97,8 +97,9 @@ static void require_furnace(void **state, const char *groom, const char *place, 
     light_stage_destroy(&covered);
 }
 
-#define CURLS "curls3k.tfx", "\"margin\": 0.01"
-#define FUR   "fur.tfx", "\"margin\": 0.01"
+#define CURLS     "curls3k.tfx", "\"margin\": 0.01"
+#define FUR       "fur.tfx", "\"margin\": 0.01"
+#define FUR_AHEAD "fur.tfx", "\"eye\": [0, 0, 1], \"target\": [0, 0, 0], \"fov\": 40"
 
 static void curls_vanish(void **state)
 {
@@ -188,6 +189,45 @@ static void an_even_environment_is_a_sky(void **state)
     light_stage_destroy(&even);
 }
 
+// An environment that is 1 + y / 2 in the direction (x, y, z) is the background at the left edge of
+// the image, where the camera's rays are known: as bright as it is, times strength and exposure.
+static void an_environment_is_the_background(void **state)
+{
+    enum { TALL = 64, W = 80, H = 60 };
+    static float pixels[TALL][2 * TALL][3]; // PFM: the lowest row first
+    static const char *const rasters[] = {"--raster blocks", "--raster compute", "--raster quads"};
+    char flags[4096], path[512];
+    snprintf(path, sizeof path, "%s", temporary_path(state, "furnace.json"));
+    const char *image = temporary_path(state, "upright.pfm");
+    for (int row = 0; row < TALL; ++row)
+        for (int i = 0; i < 2 * TALL * 3; ++i)
+            pixels[row][i / 3][i % 3] = 1 - 0.5f * (float)cos(M_PI * (row + 0.5) / TALL);
+    FILE *file = fopen(image, "wb");
+    assert_non_null(file);
+    fprintf(file, "PF\n%d %d\n-1.0\n", 2 * TALL, TALL);
+    assert_int_equal(fwrite(pixels, sizeof pixels, 1, file), 1);
+    assert_int_equal(fclose(file), 0);
+    const Furnace setting = {FUR_AHEAD, ""};
+    write_scene(&setting, path);
+    snprintf(flags, sizeof flags, "--environment %s --environment-strength 0.5 --exposure 2",
+             image);
+    for (int i = 0; i < 3; ++i) {
+        LightStage stage;
+        draw(&stage, path,
+             (const char *[]){"--size 80x60 --environment-background", flags, rasters[i]});
+        const float *light = (const float *)(void *)stage.image.pixels;
+        const double slope = tan(20 * M_PI / 180);
+        for (int y = 0; y < H; ++y) {
+            double up = (1 - 2 * (y + 0.5) / H) * slope, across = (1 - 1. / W) * slope * W / H,
+                   expected = 2 + up / sqrt(up * up + across * across + 1),
+                   found = (double)light[(size_t)y * W * (size_t)stage.image.channels];
+            if (!(fabs(found - expected) < 4e-3)) // halves are rounded by 1e-3
+                fail_msg("%s, row %d: %g, not %g", rasters[i], y, found, expected);
+        }
+        light_stage_destroy(&stage);
+    }
+}
+
 int main(void)
 {
 #define WITH_FILES(test) cmocka_unit_test_setup_teardown(test, temporary_create, temporary_destroy)
@@ -198,6 +238,7 @@ int main(void)
         WITH_FILES(fur_vanishes),
         WITH_FILES(skin_and_the_hair_around_it_vanish),
         WITH_FILES(an_even_environment_is_a_sky),
+        WITH_FILES(an_environment_is_the_background),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -159,7 +159,7 @@ static void surfaces_show_nearly_the_exact_light(void **state)
     Environment environment;
     double most = 0, off = 0;
     find_ways(way);
-    NEEDED(environment_read(&environment, "assets/studio.pfm", error));
+    NEEDED(environment_read(&environment, "assets/studio.pfm", false, error));
     environment_around(&environment, &LEVEL, terms);
     for (int d = 0; d < WAYS; ++d) {
         double right = exact(&environment, 0, way[d]);
@@ -248,7 +248,8 @@ static void other_files_are_refused(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; ++i) {
         Environment environment;
         Error error = {{0}};
-        assert_int_equal(environment_read(&environment, files[i].path, &error), RESULT_BAD_INPUT);
+        assert_int_equal(environment_read(&environment, files[i].path, false, &error),
+                         RESULT_BAD_INPUT);
         if (!strstr(error.text, files[i].says)) fail_msg("%s", error.text);
         environment_destroy(&environment);
     }

@@ -139,7 +139,7 @@ static const Environment *find_environment(void)
     enum { HEIGHT = 8, WIDTH = 2 * HEIGHT };
     static EnvironmentPart parts[ENVIRONMENT_PARTS];
     float pixels[HEIGHT][WIDTH][3];
-    static const Environment kept = {parts};
+    static const Environment kept = {.parts = parts};
     Environment made = {0};
     for (int y = 0; y < HEIGHT; ++y)
         for (int x = 0; x < WIDTH; ++x)
