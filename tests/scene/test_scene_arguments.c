@@ -64,7 +64,7 @@ static const char *find_condition(const ParamInfo *info)
         {" collide_mesh mesh_unit mesh_up mesh_color mesh_shading sdf_resolution sdf_cache ",
          "--mesh /m.obj"},
         {" mesh_rest mesh_fps mesh_start mesh_motion ", "--mesh /m.npz"},
-        {" environment_strength environment_turn ", "--environment /e.pfm"},
+        {" environment_strength environment_turn environment_background ", "--environment /e.pfm"},
         {" gust gust_period gust_repeat wind_spread wind_shelter ", "--wind 1,0,0"},
         {" export_followers ", "--export x.usda"},
         {" exr_layers exr_float ", "--output x_%d.exr"},
