@@ -62,7 +62,8 @@ static void use_simulation(TractrixDevice *device, int round)
     bool deforms = round % 2;
     size_t kinds = getenv("TEST_ROUNDS") ? sizeof algos / sizeof *algos : 2;
     const char *algo = algos[(size_t)round / 2 % kinds];
-    const char *const parameters[] = {"algo", algo, "followers", "1", "wind", "1,0,0", NULL};
+    const char *const parameters[] = {"algo",  algo,     "followers", "1", "wind",
+                                      "1,0,0", "raster", "blocks",    NULL};
     static uint8_t pixels[FIXTURE_PIXELS][4];
     TractrixScene *scene = library_scene(parameters);
     TractrixSimulation *simulation;
