@@ -57,6 +57,7 @@ static void close_shot(Shot *shot)
     params_destroy_section(&shot->section.params);
     rigid_track_destroy(&shot->scene.bodies[0].head);
     track_destroy(&shot->scene.eye);
+    track_destroy(&shot->scene.target);
     track_destroy(&shot->scene.fov);
     strands_destroy(&shot->strands);
 }
