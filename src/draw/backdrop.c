@@ -2,8 +2,8 @@
 #include "draw/backdrop.h"
 
 #include "base/parallel.h"
-
-#include <cglm/cglm.h>
+#include "base/room.h"
+#include "draw/rays.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,41 +13,24 @@ typedef struct Fill {
     Backdrop *backdrop;
     const Ambient *ambient;
     float light; // factor of the environment's
-    vec3 across, down,
-        first; // the ray through a pixel at x, y (clip space): x across + y down + first
+    Rays rays;
+    int samples; // of a pixel's side
     int parts;
 } Fill;
-
-// The rays of ray.glsl.
-static void find_rays(const DrawParams *draw, Fill *fill)
-{
-    vec3 a, b, c, bc;
-    for (int k = 0; k < 3; ++k) {
-        a[k] = draw->clip_from_world[k][0];
-        b[k] = draw->clip_from_world[k][1];
-        c[k] = draw->clip_from_world[k][3];
-    }
-    glm_vec3_cross(b, c, bc);
-    float scale = 1 / glm_vec3_dot(a, bc);
-    glm_vec3_scale(bc, scale, fill->across);
-    glm_vec3_cross(c, a, fill->down);
-    glm_vec3_scale(fill->down, scale, fill->down);
-    glm_vec3_cross(a, b, fill->first);
-    glm_vec3_scale(fill->first, scale, fill->first);
-}
 
 static void fill_rows(void *data, int part)
 {
     const Fill *fill = data;
     const Backdrop *backdrop = fill->backdrop;
+    const Rays *rays = &fill->rays;
     for (int y = part; y < backdrop->height; y += fill->parts)
         for (int x = 0; x < backdrop->width; ++x) {
             float *light = backdrop->light[(size_t)y * (size_t)backdrop->width + (size_t)x];
-            const float u = 2 * ((float)x + 0.5f) / (float)backdrop->width - 1,
-                        v = 2 * ((float)y + 0.5f) / (float)backdrop->height - 1;
+            const float u = ((float)x + 0.5f) * (float)fill->samples,
+                        v = ((float)y + 0.5f) * (float)fill->samples;
             float way[3];
             for (int k = 0; k < 3; ++k)
-                way[k] = u * fill->across[k] + v * fill->down[k] + fill->first[k];
+                way[k] = u * rays->across[k] + v * rays->down[k] + rays->from[k];
             environment_look(fill->ambient->environment, &fill->ambient->axes, way, light);
             for (int c = 0; c < 3; ++c) light[c] *= fill->light;
             light[3] = 1;
@@ -71,12 +54,7 @@ Result backdrop_find(Backdrop *backdrop, const Ambient *ambient, const RendererO
     int width = (int)draw->width / options->samples, height = (int)draw->height / options->samples;
     size_t count = (size_t)width * (size_t)height;
     if (backdrop->version && is_same(&backdrop->drawn, draw)) return RESULT_OK;
-    if (backdrop->room < count) {
-        free(backdrop->light);
-        backdrop->light = malloc(count * sizeof *backdrop->light);
-        backdrop->room = backdrop->light ? count : 0;
-    }
-    if (!backdrop->light)
+    if (!room_make(&backdrop->light, &backdrop->room, count, sizeof *backdrop->light))
         return error_set(error, RESULT_FAILED, "no memory for the background: %d x %d px", width,
                          height);
     backdrop->width = width;
@@ -84,8 +62,9 @@ Result backdrop_find(Backdrop *backdrop, const Ambient *ambient, const RendererO
     Fill fill = {.backdrop = backdrop,
                  .ambient = ambient,
                  .light = ambient->strength * exp2f(options->exposure),
+                 .rays = rays_find(draw),
+                 .samples = options->samples,
                  .parts = parallel_threads()};
-    find_rays(draw, &fill);
     parallel_run(fill.parts, fill_rows, &fill);
     backdrop->drawn = *draw;
     ++backdrop->version;

@@ -71,30 +71,6 @@ static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error
 
 // --- The mesh's surface.
 
-// The directions from the eye through pixels. At the eye, clip x, y and w are 0, so a point at the
-// offset q from the eye has the clip coordinates (a q, b q, c q) with the rows a, b, c of the
-// matrix. For w = 1 they are x, y and 1; Cramer's rule gives q.
-BaseView base_view(const DrawParams *draw)
-{
-    double row[3][3], cross[3][3], det = 0; // cross[k]: cross product of the other two rows
-    const int rows[3] = {0, 1, 3};
-    BaseView view = {.draw = draw};
-    for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) row[k][c] = (double)draw->clip_from_world[c][rows[k]];
-    for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) {
-            const double *a = row[(k + 1) % 3], *b = row[(k + 2) % 3];
-            cross[k][c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-        }
-    for (int c = 0; c < 3; ++c) det += row[0][c] * cross[0][c];
-    for (int c = 0; c < 3; ++c) {
-        view.across[c] = (float)(2 / (double)draw->width * cross[0][c] / det);
-        view.down[c] = (float)(2 / (double)draw->height * cross[1][c] / det);
-        view.from[c] = (float)((cross[2][c] - cross[0][c] - cross[1][c]) / det);
-    }
-    return view;
-}
-
 // The matrix rows that map to px of the surface and to depths 0 .. 1.
 static void find_rows(const DrawParams *draw, const int low[2], float rows[4][4])
 {
@@ -307,7 +283,7 @@ static Result draw_all(LaneBase *base, const LaneBaseScene *scene, bool moved, E
         base_mesh_light(base, scene, parts);
     }
     Finish finish = {base,
-                     base_view(scene->draw),
+                     {scene->draw, rays_find(scene->draw)},
                      base_floor(scene->floor, scene->shadow, scene->draw),
                      scene->backdrop,
                      scene->samples,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/simd.h"
+#include "draw/rays.h"
 #include "lanes/lamp.h"
 #include "lanes/shadow.h"
 
@@ -13,21 +14,19 @@
 
 enum { W = 16 };
 
-// The camera. The vector from the eye through (x, y) of the image (px) is x across + y down + from.
-// It ends one metre before the plane through the eye (ray.glsl).
+// The camera.
 typedef struct BaseView {
     const DrawParams *draw;
-    float across[3], down[3], from[3];
+    Rays rays;
 } BaseView;
-
-BaseView base_view(const DrawParams *draw);
 
 // The vectors from the eye through the middles of 16 px from (x, y) on.
 SIMD_INLINE void base_ways(const BaseView *view, int x, int y, float way[3][W])
 {
+    const Rays *rays = &view->rays;
     float column = (float)x + 0.5f, row = (float)y + 0.5f;
     for (int c = 0; c < 3; ++c) {
-        float from = view->down[c] * row + view->from[c], across = view->across[c];
+        float from = rays->down[c] * row + rays->from[c], across = rays->across[c];
         for (int k = 0; k < W; ++k) way[c][k] = across * (column + (float)k) + from;
     }
 }

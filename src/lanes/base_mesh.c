@@ -153,7 +153,7 @@ void base_mesh_light(const LaneBase *base, const LaneBaseScene *scene, int parts
         .base = base,
         .shadow = scene->shadow,
         .grid = light_grid_lights_skin(scene->grid) ? scene->grid : NULL,
-        .view = base_view(scene->draw),
+        .view = {scene->draw, rays_find(scene->draw)},
         .skin = scene->shading == MESH_SKIN,
         .parts = parts,
     };

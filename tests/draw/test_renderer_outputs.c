@@ -44,7 +44,8 @@ static size_t count_values(const Image *image)
     return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
 }
 
-// Allows half a level for rounding and 0.012 for srgb_from_linear.
+// Allows half a level for rounding and 0.012 for srgb_from_linear, on a GPU twice as much (an H200
+// is 0.56 off).
 static void every_kind_shows_the_same_picture(void **state)
 {
     (void)state;
