@@ -478,14 +478,14 @@ SIMD_INLINE void shade_points(const Shader *shader, const uint32_t *points, int 
         size_t begin = hair->first_point, end = begin + hair->tiles * W * hair->points;
         uint32_t group[W];
         int n = 0;
+        // The last group is shaded in the loop, too: a second call would double a large function.
         for (int i = 0; i < count; ++i) {
             group[n] = points[i];
             n += (points[i] >= begin) & (points[i] < end);
-            if (n < W) continue;
-            shade_group(shader, hair, group, W);
+            if (n < W && (i + 1 < count || n == 0)) continue;
+            shade_group(shader, hair, group, n);
             n = 0;
         }
-        if (n > 0) shade_group(shader, hair, group, n);
     }
 }
 
