@@ -29,7 +29,7 @@ endif
 
 # --- Flags. Only the headers of stb are used; its pkg-config file would link a library that nothing here needs. Of
 # OpenEXR only the C core is used, not its C++ libraries.
-LIBRARIES := epoxy egl libdeflate libpng jansson muparser
+LIBRARIES := epoxy egl libdeflate libisal libpng jansson muparser
 HEADERS   := cglm stb OpenEXR
 MISSING   := $(shell for p in $(LIBRARIES) $(HEADERS); do pkg-config --exists $$p || echo $$p; done 2>/dev/null)
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "image/png.h"
 
+#include "image/png_rows.h"
+
 #include <endian.h>
-#include <libdeflate.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
-// Measured on frames of hair: higher levels take half as long again for little or no gain in size.
-// The filter "up" suits hair, which runs downwards.
-enum { DEFLATE_LEVEL = 1, PALETTE_DEFLATE_LEVEL = 9, PALETTE_COLORS = 256 };
+enum { PALETTE_COLORS = 256 };
 enum { ENCODE_MAX_BYTES = 1 << 30, READ_MAX_PIXELS = 1 << 28, READ_MAX_SIDE = 1 << 20 };
 // Limits of memory: a factor on the file's size, plus a constant.
 enum { READ_MAX_FACTOR = 64, READ_SURE_BYTES = 64 << 20 };
@@ -27,15 +26,14 @@ typedef struct Codec {
     size_t size, at;
     Bytes written; // file being written, with `room` bytes allocated
     size_t room;
-    const Image *source;      // image to be written; `packed` has its compressed rows
+    const Image *source;      // image to be written
+    Bytes rows;               // of the source, compressed
     const png_color *palette; // `colors` entries, if the source has indices; NULL otherwise
     int colors;
     const ImageTexts *texts;
     png_text *chunks; // texts in libpng's form
-    uint8_t *packed;
-    size_t packed_size;
-    Image image; // being read
-    bool deep;   // keep 16 bits per sample
+    Image image;      // being read
+    bool deep;        // keep 16 bits per sample
 } Codec;
 
 static void fail(png_structp png, png_const_charp message)
@@ -105,71 +103,8 @@ static void write_file(Codec *codec)
     }
     png_set_text(codec->png, codec->info, codec->chunks, (int)count);
     png_write_info(codec->png, codec->info);
-    png_write_chunk(codec->png, (png_const_bytep) "IDAT", codec->packed, codec->packed_size);
+    png_write_chunk(codec->png, (png_const_bytep) "IDAT", codec->rows.data, codec->rows.size);
     png_write_chunk(codec->png, (png_const_bytep) "IEND", NULL, 0);
-}
-
-// to = a - b, byte by byte. Written with explicit vectors, since compilers do not vectorise the
-// plain loop.
-static void subtract(uint8_t *to, const uint8_t *a, const uint8_t *b, size_t count)
-{
-    typedef uint8_t Piece __attribute__((vector_size(16)));
-    size_t i = 0;
-    for (; i + sizeof(Piece) <= count; i += sizeof(Piece)) {
-        Piece x, y;
-        memcpy(&x, a + i, sizeof x);
-        memcpy(&y, b + i, sizeof y);
-        x -= y;
-        memcpy(to + i, &x, sizeof x);
-    }
-    for (; i < count; ++i) to[i] = (uint8_t)(a[i] - b[i]);
-}
-
-// Writes each row as its filter type "up", then the difference of its big-endian bytes to those of
-// the row above.
-static void filter_rows(const Image *image, size_t row, uint8_t *to)
-{
-    bool swapped = image->kind == IMAGE_16 && htobe16(1) != 1;
-    const uint8_t *here = image->pixels;
-    for (int y = 0; y < image->height; ++y, here += row, to += row) {
-        const uint8_t *above = y > 0 ? here - row : NULL;
-        *to++ = PNG_FILTER_VALUE_UP;
-        if (!above)
-            for (size_t i = 0; i < row; ++i) to[i] = here[i ^ swapped];
-        else if (swapped)
-            for (size_t i = 0; i < row; ++i) to[i] = (uint8_t)(here[i ^ 1] - above[i ^ 1]);
-        else
-            subtract(to, here, above, row);
-    }
-}
-
-// Writes rows of palette indices unfiltered: no filter makes them smaller.
-static void copy_rows(const Image *image, size_t row, uint8_t *to)
-{
-    for (int y = 0; y < image->height; ++y, to += row + 1) {
-        to[0] = PNG_FILTER_VALUE_NONE;
-        memcpy(to + 1, image->pixels + (size_t)y * row, row);
-    }
-}
-
-// False if memory is short.
-static bool pack_rows(Codec *codec)
-{
-    const Image *image = codec->source;
-    size_t row = image_size(image) / (size_t)image->height;
-    size_t size = (row + 1) * (size_t)image->height;
-    struct libdeflate_compressor *compressor =
-        libdeflate_alloc_compressor(codec->palette ? PALETTE_DEFLATE_LEVEL : DEFLATE_LEVEL);
-    size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, size) : 0;
-    uint8_t *rows = malloc(size);
-    codec->packed = malloc(room + 1);
-    if (compressor && rows && codec->packed) {
-        (codec->palette ? copy_rows : filter_rows)(image, row, rows);
-        codec->packed_size = libdeflate_zlib_compress(compressor, rows, size, codec->packed, room);
-    }
-    free(rows);
-    libdeflate_free_compressor(compressor);
-    return codec->packed_size > 0;
 }
 
 // Room for the file: a chunk takes 12 bytes besides its data; text chunks take a few more.
@@ -177,7 +112,7 @@ static bool make_room(Codec *codec)
 {
     enum { REST = 256 + 3 * PALETTE_COLORS };
     size_t count = codec->texts ? codec->texts->count : 0;
-    codec->room = codec->packed_size + REST;
+    codec->room = codec->rows.size + REST;
     for (size_t i = 0; i < count; ++i)
         codec->room += strlen(codec->texts->list[i].value) + IMAGE_TEXT_KEY_BYTES + REST;
     codec->chunks = calloc(count + 1, sizeof *codec->chunks);
@@ -195,7 +130,8 @@ static Result encode(Codec *codec, Bytes *png, Error *error)
     if (image_size(image) + (size_t)image->height >= ENCODE_MAX_BYTES)
         return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for PNG here",
                          image->width, image->height);
-    if (!pack_rows(codec) || !make_room(codec))
+    if (!(codec->palette ? png_rows_pack_indices : png_rows_pack)(image, &codec->rows) ||
+        !make_room(codec))
         result = error_set(error, RESULT_FAILED, "no memory to encode an image of %d x %d",
                            image->width, image->height);
     else if (!go(codec, write_file))
@@ -209,7 +145,7 @@ static Result encode(Codec *codec, Bytes *png, Error *error)
     }
     png_destroy_write_struct(&codec->png, &codec->info);
     free(codec->chunks);
-    free(codec->packed);
+    bytes_destroy(&codec->rows);
     return result;
 }
 

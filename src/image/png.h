@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // PNG files of 8 or 16 bits per channel, in memory and on disk. libpng reads files and writes
-// chunks, libdeflate compresses.
+// chunks; png_rows.h filters and compresses.
 #pragma once
 
 #include "base/bytes.h"
@@ -8,7 +8,7 @@
 #include "image/image.h"
 #include "image/image_text.h"
 
-// Encodes an IMAGE_8 or IMAGE_16, optimised for speed: deflate level 1, filter 'up' in every row.
+// Encodes an IMAGE_8 or IMAGE_16, optimised for speed (png_rows_pack).
 // The texts (NULL: none) come before the pixels, as tEXt if they are ASCII, otherwise as iTXt. The
 // same image and texts give the same bytes. Thread-safe. RESULT_FAILED when memory is short or the
 // image has 1 GiB or more. Free `png` with bytes_destroy.
