@@ -12,3 +12,7 @@ void *room_new(size_t count, size_t size);
 // If *array (owned; NULL if *room is 0) has room for fewer than `count` elements, replaces it by a
 // new one of `count`. False if memory is short; *array is then NULL and *room 0.
 bool room_make(void *array, size_t *room, size_t count, size_t size);
+
+// Lets malloc keep a few MiB of freed memory for the next blocks, where it would return them to the
+// system. A batch of small scenes then does not fault the same pages in again for each scene.
+void room_keep_freed(void);

@@ -2,6 +2,7 @@
 #include "library/library.h"
 
 #include "base/parallel.h"
+#include "base/room.h"
 #include "gpu/gl_defaults.h"
 #include "gpu/shader.h"
 
@@ -129,6 +130,7 @@ static Result create(TractrixDevice **device, Error *error)
     (*device)->users = 1;
     (*device)->process = getpid();
     atomic_fetch_add(&devices, 1);
+    room_keep_freed();
     shader_ignore_environment();
     return RESULT_OK;
 }

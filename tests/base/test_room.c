@@ -6,8 +6,38 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include <cmocka.h>
+
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__ // they replace malloc
+static long page_faults(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+}
+
+static void use_block(size_t bytes)
+{
+    void *volatile block = malloc(bytes);
+    assert_non_null(block);
+    memset(block, 1, bytes);
+    free(block);
+}
+
+// Must come first: freeing a larger block has the same effect.
+static void pages_of_freed_blocks_are_used_again(void **state)
+{
+    enum { BYTES = 1 << 20, PAGES = BYTES / 4096, FEW = PAGES / 16 };
+    (void)state;
+    room_keep_freed();
+    use_block(BYTES);
+    long before = page_faults();
+    use_block(BYTES);
+    assert_in_range(page_faults() - before, 0, FEW);
+}
+#endif
 
 static void arrays_of_all_sizes_can_be_written_to_their_end(void **state)
 {
@@ -56,6 +86,9 @@ static void sizes_that_no_memory_has_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+        cmocka_unit_test(pages_of_freed_blocks_are_used_again),
+#endif
         cmocka_unit_test(arrays_of_all_sizes_can_be_written_to_their_end),
         cmocka_unit_test(an_array_is_replaced_only_if_it_is_too_small),
         cmocka_unit_test(sizes_that_no_memory_has_fail),
