@@ -5,7 +5,7 @@
 #include "draw/light.h"
 #include "draw/light.glsl"
 #include "draw/light_class.glsl"
-#include "draw/light_walls.glsl"
+#include "draw/light_march.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -58,59 +58,6 @@ int main_class(Tangents all)
     return kind * LIGHT_CLASSES + class_of(main);
 }
 
-// A step of a straight path through cells: it crosses a wall along one axis.
-struct March {
-    ivec3 at; // cell; x is along the path's main axis
-    float passed;
-    bool inside;
-};
-
-void step_to(inout March march, int next, int k, ivec3 origin, ivec3 stride, ivec3 count)
-{
-    ivec3 on = ivec3(equal(ivec3(k), ivec3(0, 1, 2)));
-    int at = on.x * march.at.x + on.y * march.at.y + on.z * march.at.z;
-    if (next == at || !march.inside) return;
-    march.inside = next >= 0 && next < on.x * count.x + on.y * count.y + on.z * count.z;
-    if (!march.inside) return;
-    ivec3 face = march.at + on * (max(next, at) - at);
-    march.at += on * (next - at);
-    int first = on.x * origin.x + on.y * origin.y + on.z * origin.z;
-    ivec3 from = face * stride;
-    march.passed *= wall_at(first + from.x + from.y + from.z);
-}
-
-// The share of light that the mesh lets through from the centre of a cell along the unit vector
-// `way`, up to the distance `reach` (m): light_blocks_march.
-float pass_mesh(ivec3 place, vec3 way, float reach)
-{
-    int axis = longest_axis(way);
-    vec3 along = turned(way, axis);
-    ivec3 start = turned(place, axis), stride = turned(wall_step, axis),
-          count = turned(cells, axis);
-    ivec3 origin =
-        ivec3(wall_origin(axis), wall_origin((axis + 1) % 3), wall_origin((axis + 2) % 3));
-    float main = abs(along.x), most = reach * main / side + 0.5;
-    March march = March(start, 1.0, true);
-    for (int k = 1; float(k) <= most && march.inside && march.passed > 0.0; ++k) {
-        vec3 off = float(k) * along / main;
-        ivec3 next = start + ivec3(sign(off) * floor(abs(off) + 0.5));
-        step_to(march, next.y, 1, origin, stride, count); // the other axes before the main axis
-        step_to(march, next.z, 2, origin, stride, count);
-        step_to(march, next.x, 0, origin, stride, count);
-    }
-    return march.passed;
-}
-
-float find_passed(ivec3 place, int light)
-{
-    vec3 way = light_params.way[light].xyz;
-    if (light_params.walled == 0u) return 1.0;
-    if (draw_params.light_place[light].w == 0.0) return pass_mesh(place, way, 1e30);
-    vec3 off = way - light_params.low.xyz - (vec3(place) + 0.5) * side;
-    float reach = max(length(off), 1e-6);
-    return pass_mesh(place, off / reach, reach);
-}
-
 vec3 first_of(int which, int light, int d)
 {
     int kind = which / LIGHT_CLASSES,
@@ -144,28 +91,23 @@ void main()
          tint = light_params.tinted != 0u && tangents.area > 0.0
                     ? painted / (LIGHT_STEPS * tangents.area)
                     : vec3(1.0);
-    vec3 sent = vec3(0.0), glow = vec3(0.0);
+    vec3 sent = vec3(0.0);
     for (int light = 0; light < int(light_params.lights); ++light) {
-        float passed = find_passed(place, light), lit = 0.0;
+        float passed = find_passed(place, light);
         vec3 part = vec3(0.0);
         for (int which = 0; which < classes && passed > 0.0; ++which) {
             float met = sum_of(slot, which, 1 + light);
             if (met == 0.0) continue;
-            lit += met;
             part += met * passed * first_of(which, light, d);
         }
         vec3 color = draw_params.light_color[light].rgb;
         sent += part * color * tint / max(tau, 1e-12);
-        // A matt surface perpendicular to light of 1 shows its colour. Surfaces in a cell have all
-        // orientations towards the light, so they are half as bright on average.
-        glow += 0.5 * lit / max(tangents.area, 1e-12) * passed * color * draw_params.mesh_color.rgb;
     }
     if (int(gl_LocalInvocationID.x) >= LIGHT_ORDINATES) return;
     depth[slot * LIGHT_ORDINATES + d] = tau;
     int at = ordinate_address(d, slot);
     for (int k = 0; k < 3; ++k) source[at + k] = sent[k];
     if (d > 0) return;
-    cell[slot].glow = vec4(light_params.walled != 0u ? glow : vec3(0.0), 0.0);
     cell[slot].tint = vec4(tint, 0.0);
     cell[slot].places.y = main_class(tangents);
 }

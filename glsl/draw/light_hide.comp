@@ -12,21 +12,13 @@ layout(std430, binding = BIND_LIGHT_CELLS_OUT) buffer Cells { LightCell cell[]; 
 layout(std430, binding = BIND_LIGHT_STATE_OUT) readonly buffer State { LightState state; };
 layout(std430, binding = BIND_LIGHT_DEPTH_OUT) readonly buffer Depth { float depth[]; };
 
+#include "draw/light_behind.glsl"
+
 bool is_hidden(ivec3 place)
 {
-    vec3 middle = vec3(place) + 0.5,
-         way = (light_params.eye.xyz - light_params.low.xyz) / side - middle;
-    float main = max(max(max(abs(way.x), abs(way.y)), abs(way.z)), 1e-6), far = length(way) / main,
-          behind = 0.0;
-    for (int k = 2; float(k) < main; ++k) {
-        ivec3 at = ivec3(floor(middle + float(k) * way / main));
-        if (!cell_inside(at)) return false;
-        int slot = slots[cell_address(at)];
-        if (slot >= 0 && slot < int(state.filled))
-            behind += depth[slot * LIGHT_ORDINATES + int(light_params.eye_axis.w)] * far;
-        if (behind * light_params.eye.w > CELL_HIDDEN_BEHIND) return true;
-    }
-    return false;
+    vec3 way = (light_params.eye.xyz - light_params.low.xyz) / side - vec3(place) - 0.5;
+    float most = CELL_HIDDEN_BEHIND / light_params.eye.w;
+    return behind(place, way, int(light_params.eye_axis.w), 2, most) > most;
 }
 
 void main()

@@ -115,8 +115,9 @@ float find_left(Curve curve, Painter painter, int j)
 float find_lamp(vec3 x)
 {
     vec3 to_light;
-    return draw_params.light_place[light].w == 0.0 ? 1.0
-                                                   : min(light_share(light, x, to_light), 1e3);
+    return draw_params.light_place[light].w == 0.0
+               ? 1.0
+               : min(light_share(light, x, to_light), CELL_LAMP_MOST);
 }
 #endif
 

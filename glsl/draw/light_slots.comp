@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Gives slots to the marked cells of the light grid, then to the cells next to them, which
-// interpolation between cells reads.
+// interpolation between cells reads, and to cells next to the mesh, which reflects light there.
 //   BESIDE 0: marks become slots   1: cells next to cells with slots get slots   2: slots get the
 //       numbers of their cells
 #include "draw/light.h"
 #include "draw/light.glsl"
+#include "draw/light_walls.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -29,7 +30,7 @@ void main()
     int filled = int(state.filled);
     if (slot >= 0) return;
     ivec3 place = cell_place(at);
-    bool beside = false;
+    bool beside = light_params.walled != 0u && is_beside_mesh(place);
     for (int q = 0; q < 27; ++q) {
         ivec3 near = place + ivec3(q % 3, q / 3 % 3, q / 9) - 1;
         if (!cell_inside(near)) continue;

@@ -48,6 +48,23 @@ float wall(int first, ivec3 at)
     ivec3 from = at * wall_stride;
     return wall_at(first + from.x + from.y + from.z);
 }
+
+// The light that the mesh reflects in a cell (slice, column, row), which stands next to the mesh.
+vec3 glow_at(ivec3 at)
+{
+    ivec3 from = at * stride;
+    int slot = slots[from.x + from.y + from.z];
+    return ONTO == 0 && slot >= 0 ? cell[slot].glow.rgb : vec3(0.0);
+}
+
+// Takes the light that the mesh blocks from the weights of three cells next to each other, and
+// returns the light that it reflects instead into the middle cell `at`.
+vec3 meet_mesh(inout vec3 weight, float low, float high, ivec3 at)
+{
+    float blocked = (1.0 - low) * weight.x + (1.0 - high) * weight.z;
+    weight.xz *= vec2(low, high);
+    return blocked > 0.0 ? blocked * glow_at(at) : vec3(0.0);
+}
 #endif
 
 int plane_address(int parity, int x, int y)
@@ -58,33 +75,30 @@ int plane_address(int parity, int x, int y)
 // The light of row y of the slice before, blended along the columns.
 vec3 row_light(int parity, int slice, int x, int y)
 {
-    vec3 weight = column_weights;
+    vec3 weight = column_weights, glow = vec3(0.0);
 #if WALLED
-    weight.x *= wall(wall_first.y, ivec3(slice, x, y));
-    weight.z *= wall(wall_first.y, ivec3(slice, x + 1, y));
+    ivec3 at = ivec3(slice, x, y);
+    glow = meet_mesh(weight, wall(wall_first.y, at), wall(wall_first.y, at + ivec3(0, 1, 0)), at);
 #endif
-    return weight.x * plane[plane_address(parity, x - 1, y)].rgb +
+    return glow + weight.x * plane[plane_address(parity, x - 1, y)].rgb +
            weight.y * plane[plane_address(parity, x, y)].rgb +
            weight.z * plane[plane_address(parity, x + 1, y)].rgb;
 }
 
-vec3 incoming(int parity, int slice, int x, int y, int slot)
+vec3 incoming(int parity, int slice, int x, int y)
 {
     int before = forward ? slice - 1 : slice + 1;
-    vec3 weight = row_weights;
+    vec3 weight = row_weights, glow = vec3(0.0);
 #if WALLED
-    weight.x *= wall(wall_first.z, ivec3(slice, x, y));
-    weight.z *= wall(wall_first.z, ivec3(slice, x, y + 1));
+    ivec3 at = ivec3(slice, x, y);
+    glow = meet_mesh(weight, wall(wall_first.z, at), wall(wall_first.z, at + ivec3(0, 0, 1)), at);
 #endif
-    vec3 light = weight.x * row_light(parity, before, x, y - 1) +
+    vec3 light = glow + weight.x * row_light(parity, before, x, y - 1) +
                  weight.y * row_light(parity, before, x, y) +
                  weight.z * row_light(parity, before, x, y + 1);
 #if WALLED
-    // Replaces the light that the mesh blocks by the light that the mesh reflects.
     float passed = wall(wall_first.x, ivec3(forward ? slice : slice + 1, x, y));
-    vec3 glow =
-        ONTO == 0 && slot >= 0 && slot < int(state.filled) ? cell[slot].glow.rgb : vec3(0.0);
-    light = passed * light + (1.0 - passed) * glow;
+    if (passed < 1.0) light = passed * light + (1.0 - passed) * glow_at(at);
 #endif
     return light;
 }
@@ -152,7 +166,7 @@ void main()
         for (int c = lane; c < wide * tall; c += GROUP_SIZE) {
             int x = c % wide, y = c / wide,
                 at_cell = slice * stride.x + x * stride.y + y * stride.z, slot = slots[at_cell];
-            vec3 light = incoming(i & 1, slice, x, y, slot);
+            vec3 light = incoming(i & 1, slice, x, y);
 #if ONTO
             cross_onto(at_cell, light, slot);
 #else

@@ -72,6 +72,18 @@ SHARED_FUNCTION float cell_mean_share(float tau, float left)
     return tau > 1e-3f ? (1.0f - left) / tau : 1.0f - 0.5f * tau;
 }
 
+// --- Light on the mesh in a cell.
+
+// The cosine between its unit normal (nx, ny, nz) and the unit vector to the light; 0 from behind.
+// Where the normal is 0, any side may be lit: the mean over all is 1/2.
+SHARED_FUNCTION float cell_facing(float nx, float ny, float nz, float x, float y, float z)
+{
+    return nx * nx + ny * ny + nz * nz > 0.0f ? SHARED_MAX(nx * x + ny * y + nz * z, 0.0f) : 0.5f;
+}
+
+// The largest share of a lamp's colour that a place receives.
+#define CELL_LAMP_MOST 1e3f
+
 // --- Orders of scattering. The light that hair meets falls by a factor from one order to the next,
 // and is assumed to go on falling by this factor. At most this share of the light may be left to
 // orders that are not swept.

@@ -5,9 +5,8 @@
 
 #include <strings.h>
 
-// Hair colours are means over a head in the studio light, not colours of highlights. The darkest is
-// what opaque fibres still reflect, the brightest what fibres without pigment reflect
-// (docs/look.md).
+// Hair colours are means over a head in the studio light, not colours of highlights. All lie
+// between what opaque fibres still reflect and what fibres without pigment reflect (docs/look.md).
 const ColorName COLOR_NAMES[COLOR_NAME_COUNT] = {
     {"black", "#000000", "#262220"},
     {"silver", "#c0c0c0", "#8f8d89"},

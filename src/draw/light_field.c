@@ -149,6 +149,17 @@ int light_field_nearest(const LightLattice *lattice, const float to[3])
     return best;
 }
 
+void light_field_normal(const LightField *field, const int cell[3], float normal[3])
+{
+    float square = 0;
+    for (int k = 0; k < 3; ++k) {
+        normal[k] = (float)light_field_lets_in(field, cell, 2 * k) -
+                    (float)light_field_lets_in(field, cell, 2 * k + 1);
+        square += normal[k] * normal[k];
+    }
+    for (int k = 0; k < 3 && square > 0; ++k) normal[k] /= sqrtf(square);
+}
+
 Result light_field_find_walls(LightField *field, const GridScene *scene, Error *error)
 {
     const int *n = field->lattice.count;

@@ -78,6 +78,29 @@ static inline const float *light_field_walls(const LightField *field, int axis)
     return field->walled ? field->walls + (size_t)axis * z * ((size_t)n[2] + 2) + z + y + 1 : NULL;
 }
 
+// Whether the mesh lets light into this cell along a direction of the group (ordinates.h).
+static inline bool light_field_lets_in(const LightField *field, const int cell[3], int group)
+{
+    const int *n = field->lattice.count;
+    const size_t step[3] = {1, (size_t)n[0] + 2, ((size_t)n[0] + 2) * ((size_t)n[1] + 2)};
+    size_t at = (size_t)cell[0] + step[1] * (size_t)cell[1] + step[2] * (size_t)cell[2];
+    int axis = group / 2;
+    return light_field_walls(field, axis)[at + (group % 2 ? 0 : step[axis])] > 0;
+}
+
+// Whether the cell is next to the mesh: does not let light in along all directions.
+static inline bool light_field_is_beside_mesh(const LightField *field, const int cell[3])
+{
+    bool all = true;
+    for (int group = 0; group < ORDINATE_GROUPS && field->walled; ++group)
+        all = all && light_field_lets_in(field, cell, group);
+    return !all;
+}
+
+// The mean unit normal of the mesh in a cell next to it, by the walls around the cell (in the
+// lattice's axes); 0 where walls face each other, as in a thin gap.
+void light_field_normal(const LightField *field, const int cell[3], float normal[3]);
+
 // The group size: one strand of each group of this many is used and represents them all.
 static inline uint light_field_step(const GridScene *scene)
 {

@@ -8,7 +8,8 @@
 #include <string.h>
 
 // Turns counts of items into the index where the items of each part and cell begin. Gives slots to
-// cells with hair, then to their neighbours, which interpolation between cells reads.
+// cells with hair, then to their neighbours, which interpolation between cells reads, and to cells
+// next to the mesh, which reflects light there.
 void light_grid_make_slots(LightGridState *state)
 {
     const int *n = state->field.lattice.count;
@@ -37,6 +38,12 @@ void light_grid_make_slots(LightGridState *state)
             state->slot[other] = state->active;
             state->cell_of[state->active++] = other;
         }
+    }
+    for (int c = 0; c < (int)cells && state->field.walled; ++c) {
+        const int at[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+        if (state->slot[c] >= 0 || !light_field_is_beside_mesh(&state->field, at)) continue;
+        state->slot[c] = state->active;
+        state->cell_of[state->active++] = c;
     }
 }
 
@@ -127,16 +134,16 @@ typedef struct CellFill {
     LightPath paths[MAX_LIGHTS]; // for directional lights, if there is a mesh
 } CellFill;
 
-// The share of light l that the mesh lets through to cell f.
-static float find_passed(const CellFill *fill, int f, int l)
+// The share of light l that the mesh lets through to a cell.
+static float find_passed(const CellFill *fill, int slot, int l)
 {
     const LightGridState *state = fill->state;
     const LightLattice *lattice = &state->field.lattice;
     const GridScene *scene = fill->scene;
-    const int *n = lattice->count;
-    int c = state->cell_of[f], cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+    int cell[3];
     float way[3], square = 0, lamp[3];
     if (!scene->blocks) return 1;
+    grid_place(state, slot, cell);
     if (scene->draw->light_place[l][3] == 0)
         return light_path_follow(&fill->paths[l], scene->blocks, lattice, cell);
     light_lattice_turn(lattice, scene->draw->light_place[l], lamp);
@@ -189,26 +196,6 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
         memcpy(grid_source(state, g, f), source + g * GROUP_WIDE, GROUP_WIDE * sizeof *source);
 }
 
-// The light that the mesh reflects in this cell. A matt surface perpendicular to light of 1 shows
-// its colour. Surfaces in a cell have all orientations towards the light, so they are half as
-// bright on average.
-static void fill_glow(const LightGridState *state, const GridScene *scene, const CellSum *sum,
-                      const float passed[MAX_LIGHTS], int f)
-{
-    float *glow = state->glow + 3 * (size_t)f;
-    for (int c = 0; c < 3; ++c) glow[c] = 0;
-    if (!scene->blocks) return;
-    double area = 0;
-    for (int u = 0; u < sum->count; ++u) area += (double)sum->class[sum->used[u]][0];
-    for (int l = 0; l < state->field.lights && area > 0; ++l) {
-        double lit = 0;
-        for (int u = 0; u < sum->count; ++u) lit += (double)sum->class[sum->used[u]][1 + l];
-        float share = 0.5f * (float)(lit / area) * passed[l];
-        for (int c = 0; c < 3; ++c)
-            glow[c] += share * scene->draw->light_color[l][c] * scene->draw->mesh_color[c];
-    }
-}
-
 // Transmittance and mean share of a passage. Along a direction the way through a cell is as long as
 // its side over the direction's main component.
 SIMD_INLINE void fill_passage(LightGridState *state, int f)
@@ -248,7 +235,6 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         float passed[MAX_LIGHTS];
         for (int l = 0; l < state->field.lights; ++l) passed[l] = find_passed(fill, f, l);
         fill_source(state, fill->scene, sum, passed, f);
-        fill_glow(state, fill->scene, sum, passed, f);
         state->class[f] = find_main_class(sum);
         fill_passage(state, f);
         clear_sum(sum);
@@ -256,6 +242,84 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
 }
 
 SIMD_STAGE(fill_cells, CellFill)
+
+float light_grid_behind(const LightGridState *state, const int cell[3], const float way[3],
+                        int ordinate, int first, float most)
+{
+    const int *n = state->field.lattice.count;
+    float length = 0, sum = 0;
+    int axis = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (fabsf(way[k]) > fabsf(way[axis])) axis = k;
+        length += way[k] * way[k];
+    }
+    float main = fmaxf(fabsf(way[axis]), 1e-6f), step_length = sqrtf(length) / main;
+    for (int step = first; (float)step < main && sum <= most; ++step) {
+        int at[3];
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) {
+            at[k] = (int)floorf((float)cell[k] + 0.5f + (float)step * way[k] / main);
+            inside &= at[k] >= 0 && at[k] < n[k];
+        }
+        if (!inside) break;
+        int slot = state->slot[(at[2] * n[1] + at[1]) * n[0] + at[0]];
+        if (slot >= 0 && slot < state->filled)
+            sum += (step ? 1 : 0.5f) * step_length *
+                   state->depth[(size_t)slot * ORDINATES + (size_t)ordinate];
+    }
+    return sum;
+}
+
+// The share of light l's colour that the mesh in a cell receives from it.
+static float find_received(const CellFill *fill, int slot, const int cell[3], int l)
+{
+    const LightGridState *state = fill->state;
+    const LightLattice *lattice = &state->field.lattice;
+    const DrawParams *draw = fill->scene->draw;
+    float place[3], x[3] = {0}, to_light[3], way[3], n[3];
+    for (int k = 0; k < 3; ++k)
+        place[k] = lattice->low[k] + ((float)cell[k] + 0.5f) * lattice->side;
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) x[i] += lattice->turn[k][i] * place[k];
+    float share = fminf(light_field_light(draw, l, x, to_light), CELL_LAMP_MOST);
+    light_lattice_turn(lattice, to_light, way);
+    light_field_normal(&state->field, cell, n);
+    share *= cell_facing(n[0], n[1], n[2], way[0], way[1], way[2]);
+    if (share > 0) share *= find_passed(fill, slot, l);
+    if (!(share > 0)) return 0;
+    float reach = 1e6f;
+    if (draw->light_place[l][3] != 0) {
+        float square = 0;
+        for (int k = 0; k < 3; ++k) square += powf(draw->light_place[l][k] - x[k], 2);
+        reach = sqrtf(square) / lattice->side;
+    }
+    for (int k = 0; k < 3; ++k) way[k] *= reach;
+    return share * cell_left(light_grid_behind(state, cell, way,
+                                               light_field_nearest(lattice, to_light), 0, 40));
+}
+
+// The light of all lights that the mesh reflects in a cell, before any is scattered.
+SIMD_INLINE void fill_glows(const CellFill *fill, int part)
+{
+    const LightGridState *state = fill->state;
+    const DrawParams *draw = fill->scene->draw;
+    int first = (int)((int64_t)state->active * part / state->parts),
+        end = (int)((int64_t)state->active * (part + 1) / state->parts);
+    for (int slot = first; slot < end; ++slot) {
+        float *glow = state->glow + 3 * (size_t)slot;
+        int cell[3];
+        grid_place(state, slot, cell);
+        memset(glow, 0, 3 * sizeof *glow);
+        if (!light_field_is_beside_mesh(&state->field, cell)) continue;
+        for (int l = 0; l < state->field.lights; ++l) {
+            float share = find_received(fill, slot, cell, l);
+            for (int c = 0; c < 3; ++c)
+                glow[c] += share * draw->light_color[l][c] * draw->mesh_color[c];
+        }
+    }
+}
+
+SIMD_STAGE(fill_glows, CellFill)
 
 bool light_grid_fill_cells(LightGridState *state, const GridScene *scene)
 {
@@ -265,6 +329,7 @@ bool light_grid_fill_cells(LightGridState *state, const GridScene *scene)
     for (int l = 0; l < state->field.lights && scene->blocks; ++l)
         light_path_find(&fill.paths[l], &state->field.lattice, state->field.to_light[l]);
     run_fill_cells(&fill, state->parts);
+    run_fill_glows(&fill, state->parts);
     free(fill.sums);
     return true;
 }

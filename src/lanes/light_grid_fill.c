@@ -26,7 +26,7 @@ static bool grow_slots(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, active = (size_t)state->active;
     size_t of[10];
-    for (int i = 0; i < 10; ++i) of[i] = i < 5 || i == 9 ? state->filled_room : state->slot_room;
+    for (int i = 0; i < 10; ++i) of[i] = i < 5 ? state->filled_room : state->slot_room;
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
@@ -34,7 +34,7 @@ static bool grow_slots(LightGridState *state)
                 room_make(&state->passage, &of[1], filled, GRID_WIDE * sizeof(float)) &&
                 room_make(&state->source, &of[2], filled, GRID_WIDE * sizeof(float)) &&
                 room_make(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
-                room_make(&state->glow, &of[9], filled, 3 * sizeof(float)) &&
+                room_make(&state->glow, &of[9], active, 3 * sizeof(float)) &&
                 room_make(&state->class, &of[4], filled, sizeof(int)) &&
                 room_make(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
                 room_make(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&

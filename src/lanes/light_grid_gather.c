@@ -18,46 +18,28 @@ typedef struct Gather {
 
 // --- Hidden cells.
 
-static bool is_hidden(const Gather *gather, const int cell[3])
+static bool is_hidden(const Gather *gather, int slot)
 {
     const LightGridState *state = gather->state;
     const LightLattice *lattice = &state->field.lattice;
-    float way[3], length = 0, depth = 0;
-    int axis = 0;
-    for (int k = 0; k < 3; ++k) {
+    const float most = CELL_HIDDEN_BEHIND / gather->opacity;
+    int cell[3];
+    float way[3];
+    grid_place(state, slot, cell);
+    for (int k = 0; k < 3; ++k)
         way[k] = (state->eye[k] - lattice->low[k]) / lattice->side - (float)cell[k] - 0.5f;
-        if (fabsf(way[k]) > fabsf(way[axis])) axis = k;
-        length += way[k] * way[k];
-    }
-    float main = fmaxf(fabsf(way[axis]), 1e-6f), step_length = sqrtf(length) / main;
-    for (int step = 2; (float)step < main; ++step) {
-        int at[3];
-        bool inside = true;
-        for (int k = 0; k < 3; ++k) {
-            at[k] = (int)floorf((float)cell[k] + 0.5f + (float)step * way[k] / main);
-            inside &= at[k] >= 0 && at[k] < lattice->count[k];
-        }
-        if (!inside) break;
-        int slot = state->slot[(at[2] * lattice->count[1] + at[1]) * lattice->count[0] + at[0]];
-        if (slot >= 0 && slot < state->filled)
-            depth +=
-                state->depth[(size_t)slot * ORDINATES + (size_t)gather->ordinate] * step_length;
-        if (depth * gather->opacity > CELL_HIDDEN_BEHIND) return true;
-    }
-    return false;
+    return light_grid_behind(state, cell, way, gather->ordinate, 2, most) > most;
 }
 
 SIMD_INLINE void find_hidden(const Gather *gather, int part)
 {
     LightGridState *state = gather->state;
-    const int *n = state->field.lattice.count;
     int first = (int)((int64_t)state->active * part / state->parts),
         end = (int)((int64_t)state->active * (part + 1) / state->parts);
     for (int s = first; s < end; ++s) {
-        int c = state->cell_of[s], cell[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
         const float *light = state->light + (size_t)s * GRID_WIDE;
         float *mean = state->hidden + (size_t)s * 4;
-        mean[3] = is_hidden(gather, cell) ? 1 : 0;
+        mean[3] = is_hidden(gather, s) ? 1 : 0;
         if (mean[3] == 0) continue;
         for (int k = 0; k < 3; ++k) {
             float sum = 0;

@@ -136,7 +136,7 @@ static float find_lamp(const GridScene *scene, const LightLattice *lattice, int 
         float place = s->a[k][i] + on * (s->b[k][i] - s->a[k][i]);
         for (int n = 0; n < 3; ++n) x[n] += lattice->turn[k][n] * place;
     }
-    return fminf(light_field_light(scene->draw, l, x, way), 1e3f);
+    return fminf(light_field_light(scene->draw, l, x, way), CELL_LAMP_MOST);
 }
 
 // For a painted particle: the area times its albedo over the kind's mean albedo.

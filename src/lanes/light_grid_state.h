@@ -69,7 +69,7 @@ typedef struct LightGridState {
     float *sum;      // [groups][active][GROUP_WIDE]: sum of L over all orders so far
     float *light;    // [active + 1][GRID_WIDE]: L of all orders and of the environment
     float *hidden;   // [active + 1][4]: mean light, and 1 if it suffices
-    float *glow;     // [filled][3]: share of a cell's light that the mesh reflects, linear RGB
+    float *glow;     // [active][3]: light that the mesh reflects in a cell, linear RGB
     float *tint;     // [filled][3]: ratio of the albedo to the kind's
     int *class;      // [filled]: main tangent and kind
     float *planes;   // [groups][3][plane]: two slices, and rows
@@ -100,6 +100,15 @@ static inline float *grid_source(const LightGridState *state, int group, int slo
 static inline float *grid_passage(const LightGridState *state, int group, int slot)
 {
     return state->passage + ((size_t)group * (size_t)state->filled + (size_t)slot) * GROUP_WIDE;
+}
+
+// The place of a slot's cell in the lattice.
+static inline void grid_place(const LightGridState *state, int slot, int cell[3])
+{
+    const int *n = state->field.lattice.count, c = state->cell_of[slot];
+    cell[0] = c % n[0];
+    cell[1] = c / n[0] % n[1];
+    cell[2] = c / (n[0] * n[1]);
 }
 
 // The rows of a slice.
@@ -141,6 +150,12 @@ void light_grid_place(LightGridState *state, const GridScene *scene, bool emit);
 void light_grid_make_slots(LightGridState *state);
 // Computes from the items the content of the cells that sweeps need. False if memory is short.
 bool light_grid_fill_cells(LightGridState *state, const GridScene *scene);
+
+// The optical depth of the hair from `cell` along `way` (cells; its length is the reach), as it is
+// in this ordinate's direction: from step `first` on along the way's longest axis (0: half of the
+// cell itself) until it exceeds `most`.
+float light_grid_behind(const LightGridState *state, const int cell[3], const float way[3],
+                        int ordinate, int first, float most);
 
 // Finds the cells that sweeps visit. False if memory is short.
 bool light_grid_find_spans(LightGridState *state);

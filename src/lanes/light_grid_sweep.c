@@ -78,16 +78,36 @@ SIMD_INLINE void blend(const float taps[TAPS][GRID_LANES], float low, float high
                                   last * *(const GridLanes *)(c + k) + LEAST_LIGHT;
 }
 
+// The mesh beside a row of cells: its walls before each cell along the first axis across, and the
+// cells' slots; NULL where no light is reflected (onto skin, and outside the lattice).
+typedef struct RowMesh {
+    const float *wall;
+    const int *slot;
+} RowMesh;
+
+// Adds the light that the mesh reflects into a cell in place of what `blend` left out.
+SIMD_INLINE void add_glow(const LightGridState *state, const float taps[TAPS][GRID_LANES],
+                          float low, float high, int slot, float *out)
+{
+    if (slot < 0 || (low == 1 && high == 1)) return;
+    const GridLanes blocked =
+        (1 - low) * *(const GridLanes *)taps[0] + (1 - high) * *(const GridLanes *)taps[2];
+    for (int c = 0; c < 3; ++c)
+        *(GridLanes *)(out + c * GRID_LANES) += blocked * state->glow[3 * slot + c];
+}
+
 // Blends a row of the slice before along the first axis across.
-SIMD_INLINE void blend_row(const GroupWay *way, bool walls, const int cells[2], const float *wall,
-                           const float *before, float *row)
+SIMD_INLINE void blend_row(const LightGridState *state, const GroupWay *way, bool walls,
+                           RowMesh mesh, const int cells[2], const float *before, float *row)
 {
     for (int x = cells[0]; x < cells[1]; ++x) {
-        float low = walls ? wall[x * way->step[1]] : 1,
-              high = walls ? wall[(x + 1) * way->step[1]] : 1;
+        float low = walls ? mesh.wall[x * way->step[1]] : 1,
+              high = walls ? mesh.wall[(x + 1) * way->step[1]] : 1;
         const float *at = before + (size_t)x * GROUP_WIDE;
-        blend(way->taps[0], low, high, at, at + GROUP_WIDE, at + 2 * GROUP_WIDE,
-              row + (size_t)x * GROUP_WIDE);
+        float *out = row + (size_t)x * GROUP_WIDE;
+        blend(way->taps[0], low, high, at, at + GROUP_WIDE, at + 2 * GROUP_WIDE, out);
+        if (walls && mesh.slot)
+            add_glow(state, way->taps[0], low, high, mesh.slot[x * way->stride[1]], out);
     }
 }
 
@@ -136,7 +156,7 @@ SIMD_INLINE void add_met(const LightGridState *state, int group, int slot, const
 SIMD_INLINE void meet_mesh(const LightGridState *state, float passed, int slot, float *io)
 {
     for (int c = 0; c < 3; ++c) {
-        float glow = slot >= 0 && slot < state->filled ? state->glow[3 * slot + c] : 0;
+        float glow = slot >= 0 ? state->glow[3 * slot + c] : 0;
         GridLanes *lanes = (GridLanes *)(io + c * GRID_LANES);
         *lanes = passed * *lanes + (1 - passed) * glow;
     }
@@ -194,10 +214,11 @@ SIMD_INLINE void sweep_row(const Sweep *sweep, const GroupWay *way, int group, b
         ptrdiff_t here = at + x * way->step[1];
         float low = walls ? way->walls[2][here] : 1,
               high = walls ? way->walls[2][here + way->step[2]] : 1;
+        int own = slot[x * way->stride[1]];
         blend(way->taps[1], low, high, rows[0] + column, rows[1] + column, rows[2] + column,
               out + column);
         float passed = walls ? way->walls[0][here + (way->forward ? 0 : way->step[0])] : 1;
-        int own = slot[x * way->stride[1]];
+        if (!onto) add_glow(state, way->taps[1], low, high, own, out + column);
         if (passed != 1) meet_mesh(state, passed, onto ? -1 : own, out + column);
         if (onto)
             cross_onto(sweep, way, group, first + x * way->stride[1], own, out + column);
@@ -224,15 +245,21 @@ SIMD_INLINE void sweep_slice(const Sweep *sweep, const GroupWay *way, int group,
     size_t row = ((size_t)wide + 2) * GROUP_WIDE, used = (size_t)wide * GROUP_WIDE;
     const GridSpan *spans = grid_spans(sweep->state, group, slice);
     const int whole[2] = {0, wide};
-    ptrdiff_t wall = (way->forward ? slice - 1 : slice + 1) * way->step[0] - way->step[2];
+    int earlier = way->forward ? slice - 1 : slice + 1;
+    ptrdiff_t wall = earlier * way->step[0] - way->step[2];
+    const int *slot = earlier >= 0 && earlier < n[way->main]
+                          ? sweep->state->slot + earlier * way->stride[0]
+                          : NULL;
     // Row y of the slice before is stored at y % 3: three rows around a row of cells are needed at
     // a time.
     for (int y = 0; y < tall + 2; ++y) {
         int blended[2] = {wide, 0};
         for (int around = y < 2 ? 0 : y - 2; around <= y && around < tall; ++around)
             grid_span_join(blended, onto ? whole : grid_span_cells(&spans[around], sweep->sky));
-        blend_row(way, walls, blended, walls ? way->walls[1] + wall + y * way->step[2] : NULL,
-                  planes->before + (size_t)y * row, planes->rows + (size_t)(y % 3) * used);
+        RowMesh mesh = {.wall = walls ? way->walls[1] + wall + y * way->step[2] : NULL};
+        if (!onto && slot && y > 0 && y <= tall) mesh.slot = slot + (y - 1) * way->stride[2];
+        blend_row(sweep->state, way, walls, mesh, blended, planes->before + (size_t)y * row,
+                  planes->rows + (size_t)(y % 3) * used);
         if (y < 2) continue;
         const float *const rows[3] = {planes->rows + (size_t)((y - 2) % 3) * used,
                                       planes->rows + (size_t)((y - 1) % 3) * used,
@@ -332,16 +359,23 @@ SIMD_INLINE void scatter_channel(const LightGridState *state, const float (*rows
         }
 }
 
-// The mesh reflects the light of the last order, times its colour, equally in all directions.
-SIMD_INLINE void reflect(const LightGridState *state, int f)
+// The mesh in a cell reflects its colour's share of the light of the last order that it receives,
+// equally in all directions.
+SIMD_INLINE void reflect(const LightGridState *state, int slot)
 {
-    for (int c = 0; c < 3; ++c) {
-        float sum = 0;
-        for (int g = 0; g < ORDINATE_GROUPS; ++g)
-            for (int l = 0; l < GRID_LANES; ++l)
-                sum += grid_lane(state, state->order, g, f)[c * GRID_LANES + l];
-        state->glow[3 * f + c] = state->mesh_color[c] * sum * (1.f / ORDINATES);
+    int cell[3];
+    float n[3], sum[3] = {0}, weights = 0;
+    grid_place(state, slot, cell);
+    if (!light_field_is_beside_mesh(&state->field, cell)) return;
+    light_field_normal(&state->field, cell, n);
+    for (int d = 0; d < ORDINATES; ++d) {
+        const float *order = grid_lane(state, state->order, d / GRID_LANES, slot) + d % GRID_LANES;
+        float weight =
+            cell_facing(n[0], n[1], n[2], -ORDINATE[0][d], -ORDINATE[1][d], -ORDINATE[2][d]);
+        for (int k = 0; k < 3; ++k) sum[k] += weight * order[k * GRID_LANES];
+        weights += weight;
     }
+    for (int k = 0; k < 3; ++k) state->glow[3 * slot + k] = state->mesh_color[k] * sum[k] / weights;
 }
 
 SIMD_INLINE void scatter(const LightGridState *state, int part)
@@ -354,8 +388,10 @@ SIMD_INLINE void scatter(const LightGridState *state, int part)
             scatter_channel(state,
                             (const float(*)[ORDINATES])kind->scatter[state->class[f] % TANGENTS][c],
                             f, c, state->tint[3 * f + c]);
-        reflect(state, f);
     }
+    first = (int)((int64_t)state->active * part / state->parts);
+    end = (int)((int64_t)state->active * (part + 1) / state->parts);
+    for (int slot = first; slot < end && state->field.walled; ++slot) reflect(state, slot);
 }
 
 SIMD_STAGE(scatter, LightGridState)

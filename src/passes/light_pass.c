@@ -31,6 +31,7 @@ static const PassShape SHAPES[LIGHT_PASSES] = {
         {.file = "draw/light_items.comp", .items = 2, .shadow = 2, .wide = 1, .hair = true},
     [LIGHT_PASS_LIT_ALL] = {.file = "draw/light_items.comp", .items = 2, .hair = true},
     [LIGHT_PASS_FILL] = {.file = "draw/light_fill.comp", .group = ORDINATE_GROUP},
+    [LIGHT_PASS_GLOW] = {.file = "draw/light_glow.comp", .group = -1},
     [LIGHT_PASS_SWEEP] = {.file = "draw/light_sweep.comp", .group = SWEEP_GROUP},
     [LIGHT_PASS_SWEEP_WALLED] = {.file = "draw/light_sweep.comp",
                                  .group = SWEEP_GROUP,

@@ -15,6 +15,7 @@ typedef enum LightPass {
     LIGHT_PASS_LIT_WIDE, // for such a light with a radius
     LIGHT_PASS_LIT_ALL,  // for a light without a map
     LIGHT_PASS_FILL,
+    LIGHT_PASS_GLOW,
     LIGHT_PASS_SWEEP,
     LIGHT_PASS_SWEEP_WALLED,
     LIGHT_PASS_SWEEP_ONTO, // the light that hair sends, for skin

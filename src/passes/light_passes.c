@@ -230,6 +230,7 @@ static Result count_slots(LightPasses *passes, const GridScene *scene, ShadowCas
         light_pass_run_hair(&passes->programs, &casters.list[i], light_field_step(scene),
                             casters.list[i].batch->vertex_count - 1, LIGHT_PART_SEGMENTS);
     light_pass_end();
+    if (passes->field.walled) gpu_buffer_bind_texture(&passes->walls, BIND_LIGHT_WALLS);
     for (LightPass pass = LIGHT_PASS_HAIR_SLOTS; pass <= LIGHT_PASS_BESIDE_SLOTS; ++pass) {
         TRY(light_pass_use(&passes->programs, pass, 0, error));
         light_pass_run_cells(&passes->programs, pass, cells);
@@ -333,6 +334,9 @@ static Result fill_cells(LightPasses *passes, const GridScene *scene, ShadowCast
         int range[2] = {first, first + turn < passes->filled ? first + turn : passes->filled};
         TRY(fill_range(passes, scene, casters, range, error));
     }
+    if (!field->walled) return RESULT_OK;
+    TRY(light_pass_use(&passes->programs, LIGHT_PASS_GLOW, 0, error));
+    light_pass_run_cells(&passes->programs, LIGHT_PASS_GLOW, passes->active);
     return RESULT_OK;
 }
 
@@ -361,7 +365,7 @@ static Result sweep_orders(LightPasses *passes, const GridScene *scene, Error *e
     for (int order = 1; order <= scene->orders; ++order) {
         if (passes->lights_skin) gpu_buffer_bind_storage(&passes->sent, BIND_LIGHT_SENT_OUT);
         TRY(light_pass_use(&passes->programs, LIGHT_PASS_SCATTER, 0, error));
-        light_pass_run_cells(&passes->programs, LIGHT_PASS_SCATTER, passes->filled);
+        light_pass_run_cells(&passes->programs, LIGHT_PASS_SCATTER, passes->active);
         TRY(run_sweep(passes, order, false, error));
         TRY(light_pass_use(&passes->programs, LIGHT_PASS_ORDER, 0, error));
         glUniform2i(0, order, scene->orders);
@@ -409,8 +413,8 @@ Result light_passes_solve(LightPasses *passes, const GridScene *scene, ShadowCas
     light_field_find_lights(&passes->field, scene);
     for (uint32_t i = 0; i < casters.count; ++i)
         passes->field.tinted |= casters.list[i].batch->paint.buffer != 0;
-    set_params(passes, scene);
     TRY(upload_walls(passes, scene, error));
+    set_params(passes, scene);
     passes->lights_skin = scene->skin && passes->field.walled;
     TRY(count_slots(passes, scene, casters, error));
     if (!passes->filled) return RESULT_OK;

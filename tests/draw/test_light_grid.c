@@ -149,6 +149,7 @@ static void set_sky(Ball *ball, float light)
 static void set_sun(Ball *ball, float x, float y, float z)
 {
     ball->draw.light_count = 1;
+    ball->draw.light_cone[0][0] = 1;
     const float place[3] = {x, y, z};
     for (int k = 0; k < 3; ++k) {
         ball->draw.light_place[0][k] = place[k];
@@ -271,7 +272,6 @@ static void a_far_lamp_is_a_sun(void **state)
         set_sun(ball, 0, i ? 100 : 1, 0);
         ball->draw.light_place[0][3] = (float)i;
         ball->draw.light_axis[0][3] = 100 * 100;
-        ball->draw.light_cone[0][0] = 1;
         solve(ball);
         means[i] = mean_seen(ball);
         close_ball(ball);
@@ -393,6 +393,75 @@ static void hair_sends_light_onto_skin(void **state)
             fail_msg("sun %d: %g of %g", i, found, expected);
         light_grid_destroy(&grid);
         light_blocks_destroy(&blocks);
+        close_ball(ball);
+    }
+}
+
+// The mean light that travels upwards in the cells above the middle of a plate, 2 m wide, under
+// hair that is too thin to matter. The plate reflects half of the light.
+static double find_reflected(Ball *ball)
+{
+    static const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
+    const float y = -0.06f;
+    float vertices[4][3];
+    LightGrid grid = {0};
+    double sum = 0, weights = 0;
+    for (int v = 0; v < 4; ++v)
+        memcpy(vertices[v], (float[3]){v & 1 ? 1 : -1, y, v & 2 ? 1 : -1}, sizeof vertices[v]);
+    LightBlocks blocks = {.mesh = {.vertices = (const float(*)[3])vertices,
+                                   .triangles = triangles,
+                                   .vertex_count = 4,
+                                   .triangle_count = 2,
+                                   .rotation = {0, 0, 0, 1}}};
+    for (int k = 0; k < 3; ++k) ball->draw.mesh_color[k] = 0.5f;
+    ball->hair.caster.material.radius = 1e-7f;
+    ball->scene.blocks = &blocks;
+    NEEDED(light_grid_solve(&grid, &ball->scene, error));
+    const LightGridState *state = grid.state;
+    const LightLattice *lattice = &state->field.lattice;
+    for (int slot = 0; slot < state->active; ++slot) {
+        int cell[3];
+        float x[3] = {0};
+        grid_place(state, slot, cell);
+        for (int k = 0; k < 3; ++k)
+            for (int n = 0; n < 3; ++n)
+                x[n] += lattice->turn[k][n] *
+                        (lattice->low[k] + ((float)cell[k] + 0.5f) * lattice->side);
+        if (hypot((double)x[0], (double)x[2]) > 0.05 || x[1] < y || x[1] > y + lattice->side)
+            continue;
+        for (int d = 0; d < ORDINATES; ++d) {
+            float up = 0;
+            for (int k = 0; k < 3; ++k) up += lattice->turn[k][1] * ORDINATE[k][d];
+            if (up <= 0) continue;
+            sum +=
+                (double)(up * state->light[(size_t)slot * GRID_WIDE +
+                                           (size_t)(d / GRID_LANES * GROUP_WIDE + d % GRID_LANES)]);
+            weights += (double)up;
+        }
+    }
+    assert_true(weights > 10);
+    light_grid_destroy(&grid);
+    light_blocks_destroy(&blocks);
+    return sum / weights;
+}
+
+// A matt plate of the color 1/2 sends half of a sun's light times the cosine of its angle upwards,
+// and half of the sky's light, though no hair stands on it. It lies oblique to the cells, whose
+// walls know only 26 normals: measured 0.91, 0.89, 0.95 of it for the suns, and 1.02 for the sky.
+static void bare_skin_lights_hair(void **state)
+{
+    (void)state;
+    static const float suns[][3] = {{0, 1, 0}, {0.6f, 0.8f, 0}, {0, 0.6f, -0.8f}, {0, 0, 0}};
+    for (int i = 0; i < 4; ++i) {
+        Ball *ball = open_ball(0.8f);
+        double expected = i < 3 ? 0.5 * (double)suns[i][1] : 0.5;
+        if (i < 3)
+            set_sun(ball, suns[i][0], suns[i][1], suns[i][2]);
+        else
+            set_sky(ball, 1);
+        double found = find_reflected(ball);
+        if (!(found > 0.86 * expected && found < 1.05 * expected))
+            fail_msg("light %d: %.4f of %.4f", i, found, expected);
         close_ball(ball);
     }
 }
@@ -756,6 +825,7 @@ int main(void)
         cmocka_unit_test(a_mesh_stands_in_the_light),
         cmocka_unit_test(some_strands_stand_for_all),
         cmocka_unit_test(hair_sends_light_onto_skin),
+        cmocka_unit_test(bare_skin_lights_hair),
         cmocka_unit_test(light_is_what_maps_leave),
         cmocka_unit_test(sweeps_of_needed_cells_equal_sweeps_of_all_cells),
         cmocka_unit_test(walls_are_those_of_the_mesh_and_open_around),
