@@ -134,7 +134,7 @@ says '::error file=a/o%2Cd%3Ad 100%25%0D%0Ax|`.pfm,title=o%2Cd%3Ad 100%25%0D%0Ax
 says 'failing pixels (50 %25)'
 counts "$work/out" "::error" 2; if [ "$(wc -l <"$work/out")" = 2 ]; then good; else bad "more than two lines"; fi
 in_file "$work/summary.md" "### Images: 2 of 3 failed"; in_file "$work/summary.md" "Limits: pixel tolerance 0, failing pixels 1 %."
-in_file "$work/summary.md" '| `f_2.pfm` | different |'; in_file "$work/summary.md" '| `o,d:d 100%??x\|'\''.pfm` | different |'
+in_file "$work/summary.md" '| `f_2.pfm` | different |'; in_file "$work/summary.md" ' | 600 (50 %) | '; in_file "$work/summary.md" '| `o,d:d 100%??x\|'\''.pfm` | different |'
 rm "$work/a/$odd" "$work/b/$odd"
 GITHUB_STEP_SUMMARY=$work/summary.md/none
 run 1 -q "$work/a" "$work/b" --github; one_line; says "summary.md/none: cannot write"

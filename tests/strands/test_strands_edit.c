@@ -248,6 +248,28 @@ static void figures_of_a_circle_are_known(void **state)
     strands_destroy(&strands);
 }
 
+// 101 straight strands, 1 to 101 m long.
+static void figures_have_the_5th_50th_and_95th_of_a_hundred(void **state)
+{
+    (void)state;
+    enum { COUNT = 101 };
+    Strands strands;
+    assert_int_equal(strands_create(&strands, COUNT, 2 * COUNT, NULL), RESULT_OK);
+    for (uint32_t s = 0; s <= COUNT; ++s) strands.first[s] = 2 * s;
+    for (uint32_t s = 0; s < COUNT; ++s) {
+        memset(strands.position[2 * s], 0, sizeof(float[3]));
+        memcpy(strands.position[2 * s + 1], (float[3]){0, (float)(s * 37 % COUNT + 1), 0},
+               sizeof(float[3]));
+    }
+    Figures figures;
+    assert_int_equal(figures_measure(&figures, &strands, NULL, NULL), RESULT_OK);
+    const Figure *length = &figures.figures[FIGURE_LENGTH];
+    assert_true(length->min == 1 && length->low == 6 && length->median == 51);
+    assert_true(length->high == 96 && length->max == 101 && length->mean == 51);
+    figures_destroy(&figures);
+    strands_destroy(&strands);
+}
+
 static void figures_count_vertices_and_find_roots(void **state)
 {
     (void)state;
@@ -284,6 +306,7 @@ int main(void)
         cmocka_unit_test(spacing_makes_as_many_vertices_as_needed),
         cmocka_unit_test(thinning_keeps_the_same_strands_for_the_same_seed),
         cmocka_unit_test(figures_of_a_circle_are_known),
+        cmocka_unit_test(figures_have_the_5th_50th_and_95th_of_a_hundred),
         cmocka_unit_test(figures_count_vertices_and_find_roots),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
