@@ -14,8 +14,8 @@ void main()
 {
     int cell = lane_index(), all_cells = int(light_params.count.w);
     if (cell >= all_cells) return;
-    vec3 sum[ONTO_FACES], all = vec3(0.0);
-    float weights[ONTO_FACES];
+    vec3 sum[ONTO_FACES];
+    float weights[ONTO_FACES], all = 0.0;
     for (int f = 0; f < ONTO_FACES; ++f) {
         sum[f] = vec3(0.0);
         weights[f] = 0.0;
@@ -32,8 +32,7 @@ void main()
     }
     for (int f = 0; f < ONTO_FACES; ++f) {
         sum[f] /= weights[f];
-        all += sum[f];
+        all += sum[f].r + sum[f].g + sum[f].b;
     }
-    bool lit = all.r + all.g + all.b > ONTO_LEAST;
-    for (int f = 0; f < ONTO_FACES; ++f) faces[cell * ONTO_FACES + f] = vec4(sum[f], float(lit));
+    for (int f = 0; f < ONTO_FACES; ++f) faces[cell * ONTO_FACES + f] = vec4(sum[f], all);
 }

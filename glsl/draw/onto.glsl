@@ -18,12 +18,18 @@ vec3 onto_light(vec3 x, vec3 n)
          from = clamp(inside - 0.5, vec3(0.0), onto_cells.xyz - 1.0);
     ivec3 first = ivec3(from);
     vec3 share = from - vec3(first), sum = vec3(0.0);
-    float weights = 0.0;
+    float weights = 0.0, brightest = 0.0, all[8];
+    int faces[8];
     for (int q = 0; q < 8; ++q) {
-        ivec3 high = ivec3(q & 1, q >> 1 & 1, q >> 2), cell = min(first + high, count - 1);
-        vec3 of = mix(1.0 - share, share, equal(high, ivec3(1)));
-        int face = ((cell.z * count.y + cell.y) * count.x + cell.x) * ONTO_FACES;
-        float weight = of.x * of.y * of.z * texelFetch(onto_faces, face).a;
+        ivec3 cell = min(first + ivec3(q & 1, q >> 1 & 1, q >> 2), count - 1);
+        faces[q] = ((cell.z * count.y + cell.y) * count.x + cell.x) * ONTO_FACES;
+        all[q] = texelFetch(onto_faces, faces[q]).a;
+        brightest = max(brightest, all[q]);
+    }
+    for (int q = 0; q < 8; ++q) {
+        vec3 of = mix(1.0 - share, share, equal(ivec3(q & 1, q >> 1 & 1, q >> 2), ivec3(1)));
+        int face = faces[q];
+        float weight = all[q] > ONTO_LEAST * brightest ? of.x * of.y * of.z : 0.0;
         weights += weight;
         for (int k = 0; k < 3; ++k)
             sum +=

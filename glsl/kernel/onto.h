@@ -13,7 +13,7 @@
 // few of the eight cells around it lie below the skin. Those have no light and are left out. (At
 // 0.5 the stepped walls of the cells catch 4 to 8 % more of the light.)
 #define ONTO_ABOVE 1.0f
-// The light of a cell below the skin is less than this.
+// A cell whose light is less than this share of the brightest of the eight lies below the skin.
 #define ONTO_LEAST 1e-6f
 
 // The weight of light that travels along an axis with this cosine, on a surface that faces this

@@ -286,10 +286,10 @@ static bool lights_are_simple(const RenderFrame *frame)
                         memcmp(ambient->sky, ambient->ground, sizeof ambient->sky) == 0);
 }
 
-static bool lights_are_wide(const RenderFrame *frame)
+bool drawing_has_wide_lights(const DrawParams *draw)
 {
-    for (uint32_t i = 0; i < frame->light_count; ++i)
-        if (frame->lights[i].radius > 0) return true;
+    for (int i = 0; i < draw->light_count; ++i)
+        if (draw->light_color[i][3] > 0) return true;
     return false;
 }
 
@@ -390,12 +390,13 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Dra
 {
     static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // [Aov]
     unsigned features = aovs[options->aov];
+    fill_draw_params(options, mesh, frame, &drawing->draw);
     if (options->aov == AOV_NONE)
         features = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) |
-                   (lights_are_wide(frame) ? LOOK_WIDE : 0) | shadow_features(options, mesh);
+                   (drawing_has_wide_lights(&drawing->draw) ? LOOK_WIDE : 0) |
+                   shadow_features(options, mesh);
     drawing->items = items;
     drawing->item_count = item_count;
-    fill_draw_params(options, mesh, frame, &drawing->draw);
     set_widths(drawing, frame);
     drawing->whole = drawing->draw;
     find_boxes(drawing, options, mesh);

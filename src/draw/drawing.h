@@ -57,5 +57,8 @@ uint64_t drawing_count_segments(const Drawing *drawing);
 void drawing_set_view(DrawParams *draw, const View *view, int width, int height);
 void drawing_set_lights(DrawParams *draw, const Light *lights, uint32_t count);
 
+// Whether a light has a radius.
+bool drawing_has_wide_lights(const DrawParams *draw);
+
 // `radius`: fibre radius at the root, m. Members that depend on the batch's size stay 0.
 MaterialParams drawing_material(const SectionParams *params, float radius);

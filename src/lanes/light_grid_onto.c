@@ -53,7 +53,7 @@ SIMD_INLINE void sum_onto(const LightGridState *state, int part)
                 state->onto[i][f][c] = sum;
                 all += sum;
             }
-        state->onto[i][0][3] = all > ONTO_LEAST ? 1 : 0;
+        state->onto[i][0][3] = all;
     }
 }
 

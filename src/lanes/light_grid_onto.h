@@ -40,14 +40,22 @@ SIMD_INLINE void onto_point(const LightGridState *state, const float p[3], const
     const int *count = lattice->count;
     int cell[3][2], longest = count[0] > count[1] ? count[0] : count[1];
     float share[3][2], sum[3] = {0}, weights = 0, away = onto_find_cells(lattice, p, cell, share);
+    const float(*faces[8])[4];
+    float brightest = 0;
     longest = longest > count[2] ? longest : count[2];
     for (int q = 0; q < 8; ++q) {
-        int x = q & 1, y = q >> 1 & 1, z = q >> 2;
         const size_t at =
-            ((size_t)cell[2][z] * (size_t)count[1] + (size_t)cell[1][y]) * (size_t)count[0] +
-            (size_t)cell[0][x];
-        float(*face)[4] = state->onto[at];
-        float weight = share[2][z] * share[1][y] * share[0][x] * face[0][3];
+            ((size_t)cell[2][q >> 2] * (size_t)count[1] + (size_t)cell[1][q >> 1 & 1]) *
+                (size_t)count[0] +
+            (size_t)cell[0][q & 1];
+        faces[q] = (const float(*)[4])state->onto[at];
+        brightest = simd_max(brightest, faces[q][0][3]);
+    }
+    for (int q = 0; q < 8; ++q) {
+        const float(*face)[4] = faces[q];
+        float weight = face[0][3] > ONTO_LEAST * brightest
+                           ? share[2][q >> 2] * share[1][q >> 1 & 1] * share[0][q & 1]
+                           : 0;
         weights += weight;
         for (int k = 0; k < 3; ++k) {
             const float *to = face[onto_face(k, n[k])];

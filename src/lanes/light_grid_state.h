@@ -80,7 +80,7 @@ typedef struct LightGridState {
 
     bool lights_skin;                    // sent, onto: the light that hair sends onto skin
     float *sent;                         // [groups][filled][GROUP_WIDE]: sum of S over all orders
-    float (*onto)[ONTO_FACES][4];        // [cells]: see kernel/onto.h; [0][3]: 1 if there is light
+    float (*onto)[ONTO_FACES][4];        // [cells]: see kernel/onto.h; [0][3]: sum of all values
     float (*onto_groups)[ONTO_FACES][3]; // [groups][cells]: parts of this sum
     size_t sent_room, onto_room;         // cells
 

@@ -38,13 +38,6 @@ static void forget(BaseLayer *base)
     }
 }
 
-static bool is_wide(const DrawParams *draw)
-{
-    for (int i = 0; i < draw->light_count; ++i)
-        if (draw->light_color[i][3] > 0) return true;
-    return false;
-}
-
 void base_layer_count(BaseLayer *base, int light_count, int map_count, bool wide, bool onto)
 {
     if (base->light_count == light_count && base->map_count == map_count && base->wide == wide &&
@@ -216,7 +209,7 @@ static Result draw_all(BaseLayer *base, const BaseScene *scene, const RenderTarg
     FloorKind floor = seen ? scene->floor->kind : FLOOR_NONE;
     Shadow shadow = scene->shadow->options.kind;
     base_layer_count(base, scene->draw->light_count, scene->shadow->params.maps,
-                     is_wide(scene->draw), scene->light != NULL);
+                     drawing_has_wide_lights(scene->draw), scene->light != NULL);
     if (mesh) TRY(base_layer_build_light(base, shadow, error));
     if (mesh || seen || base->backdrop) TRY(base_layer_build(base, mesh, floor, shadow, error));
     if (base->backdrop) TRY(upload_backdrop(base, scene, error));

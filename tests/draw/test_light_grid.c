@@ -348,14 +348,16 @@ static double sum_onto(const Ball *ball, const float x[3], const float sun[3])
 
 // Against the sum over all segments, where hair is so thin that light is scattered once. The plate
 // lies oblique to the cells, whose walls are steps that catch light. So the mean over the middle of
-// the plate is too dark: measured 0.89, 0.99 and 0.83 for the three suns.
+// the plate is too dark: measured 0.89, 0.99 and 0.83 for the three suns. A very weak sun gives the
+// same share.
 static void hair_sends_light_onto_skin(void **state)
 {
     (void)state;
     static const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
-    static const float suns[][3] = {{0, 1, 0}, {0.6f, 0.8f, 0}, {0, 0.6f, -0.8f}};
-    static const double least[] = {0.86, 0.96, 0.80};
-    for (int i = 0; i < 3; ++i) {
+    static const float suns[][3] = {{0, 1, 0}, {0.6f, 0.8f, 0}, {0, 0.6f, -0.8f}, {0, 1, 0}},
+                       strength[] = {1, 1, 1, 1e-9f};
+    static const double least[] = {0.86, 0.96, 0.80, 0.86};
+    for (int i = 0; i < 4; ++i) {
         Ball *ball = open_ball(0.8f);
         LightGrid grid = {0};
         float vertices[4][3];
@@ -373,6 +375,7 @@ static void hair_sends_light_onto_skin(void **state)
         ball->scene.skin = true;
         ball->scene.cells = 32;
         set_sun(ball, suns[i][0], suns[i][1], suns[i][2]);
+        for (int k = 0; k < 3; ++k) ball->draw.light_color[0][k] *= strength[i];
         NEEDED(light_grid_solve(&grid, &ball->scene, error));
         assert_true(light_grid_lights_skin(&grid));
         for (int row = 0; row < STRAND_TILE; ++row) {
@@ -385,7 +388,7 @@ static void hair_sends_light_onto_skin(void **state)
                             seen);
             for (int k = 0; k < STRAND_TILE; ++k) {
                 const float at[3] = {x[0][k], x[1][k], x[2][k]};
-                found += (double)seen[1][k];
+                found += (double)(seen[1][k] / strength[i]);
                 expected += sum_onto(ball, at, suns[i]);
             }
         }

@@ -63,6 +63,17 @@ if [ "$(find "$work/own/fur" -name 'frame_*.png' | wc -l)" = 3 ]; then good; els
 run 0 --seconds=0.04 --output="$work/long" assets/fur.tfx sheet --size 16x16 --quality draft --preroll 0 -q
 is_file "$work/long/fur_sheet.png"
 
+claim "without --size: frames of 960x960 px, animations of 480x480, sheets of tiles of 320x320"
+if command -v ffprobe >/dev/null; then
+    run 0 -s 0.04 assets/fur.tfx frames gif sheet -o "$work/free" --quality draft --followers 0 --preroll 0 -q
+    turns=$work/free
+    stream fur/frame_0000.png png,960,960,rgb24,1
+    stream fur.gif gif,480,480,bgra,1
+    stream fur_sheet.png png,1920,1280,rgb24,1
+else
+    skip "ffprobe is not installed"
+fi
+
 claim "options, asset and formats stand in any order"
 run 0 --size 16x16 -q --turntable 90 --turn-lights assets/fur.tfx --quality=draft sheet --preroll 0 --seconds 0.04 -o "$work/late"
 is_file "$work/late/fur_sheet.png"
