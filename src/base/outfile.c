@@ -67,14 +67,9 @@ static Result find_place(Place *place, const char *path, Error *error)
     if (reason) return fail_to_write(path, reason, error);
     Result result = RESULT_OK;
     if (confined && place->is_link)
-        result =
-            error_set(error, RESULT_BAD_INPUT,
-                      "%.300s: is a symbolic link, which outputs of a scene file do not follow: "
-                      "expected a plain file, --allow-paths, or the path on the command line",
-                      path);
+        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_LINK, path);
     else if (confined && !place_is_within(place, &claim->home))
-        result =
-            error_set(error, RESULT_BAD_INPUT, "%.300s: is outside the scene file's folder", path);
+        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_OUTSIDE, path);
     else if (place->exists)
         result = check_identity(path, &place->file, error);
     if (result != RESULT_OK) place_close(place);

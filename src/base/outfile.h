@@ -26,6 +26,12 @@ typedef struct OutFile {
     Leftover *leftover;
 } OutFile;
 
+// Why an output that a scene file names is refused, for messages that begin with its place.
+#define OUTFILE_ALLOWS     "expected --allow-paths, or the path on the command line"
+#define OUTFILE_IS_OUTSIDE "is outside the scene file's folder: " OUTFILE_ALLOWS
+#define OUTFILE_IS_LINK                                                                            \
+    "is a symbolic link, which outputs of a scene file do not follow: " OUTFILE_ALLOWS
+
 // Whether the path is "-", standard output.
 bool outfile_is_stdout(const char *path);
 

@@ -196,16 +196,11 @@ static Result check_home(const Spot *spot, const PathUse *use, struct stat *home
     place_close(&place);
     if (reason) return fail(use, reason, error);
     if (!place_is_within(&spot->place, home))
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%.300s: %s %.300s is outside the scene file's folder: expected "
-                         "--allow-paths, or the path on the command line",
+        return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s " OUTFILE_IS_OUTSIDE,
                          use->home, use->name, use->path);
     if (!spot->place.is_link) return RESULT_OK;
-    return error_set(
-        error, RESULT_BAD_INPUT,
-        "%.300s: %s %.300s is a symbolic link, which outputs of a scene file do not follow: "
-        "expected --allow-paths, or the path on the command line",
-        use->home, use->name, use->path);
+    return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s " OUTFILE_IS_LINK, use->home,
+                     use->name, use->path);
 }
 
 // Checks a link that already exists under the name of one of the numbered files.
@@ -215,11 +210,8 @@ static Result check_link(const Uses *all, int i, const char *name, Error *error)
     const Place *folder = &all->spots[i].place;
     Spot spot = {.used = true, .place = {.folder = -1}};
     if (use->home)
-        return error_set(
-            error, RESULT_BAD_INPUT,
-            "%.300s: %s %.300s: %.200s is a symbolic link, which outputs of a scene file do not "
-            "follow: expected --allow-paths, or the path on the command line",
-            use->home, use->name, use->path, name);
+        return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s: %.200s " OUTFILE_IS_LINK,
+                         use->home, use->name, use->path, name);
     int reason = place_copy(&spot.place, folder, name);
     if (!reason) reason = place_look(&spot.place, true);
     if (!reason && fstat(spot.place.folder, &spot.folder) != 0) reason = errno;

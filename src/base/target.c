@@ -81,7 +81,8 @@ static Result take_pattern(Target *target, const char *text, Error *error)
     int numbers = split_pattern(target, text);
     if (numbers < 0 || numbers > 1)
         return error_set(error, RESULT_USAGE,
-                         "%s: expected one frame number, %%d or %%04d (%%%% for a percent sign)",
+                         "%s: a wrong or second frame number: expected one %%d or %%04d (%%%% "
+                         "stands for a percent sign)",
                          text);
     if (strchr(target->after, '/'))
         return error_set(error, RESULT_USAGE,
@@ -150,7 +151,7 @@ static Result take_image(Target *target, const char *text, Error *error)
     return error_set(error, RESULT_USAGE,
                      "%s: expected a folder with a slash at its end, a name ending in .png, .pfm, "
                      ".exr, .jpg, .mp4, .webm, .gif or .y4m, or - for standard output",
-                     *text ? text : "output name is empty");
+                     *text ? text : "the output's name is empty");
 }
 
 Result target_parse(Target *target, const char *text, Error *error)

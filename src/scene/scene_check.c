@@ -19,8 +19,8 @@ static Result check_frames(const RunParams *run, Error *error)
                          "--last %d: expected %d to %d (or -1), since --frames is %d", run->last,
                          run->first, run->frames - 1, run->frames);
     if (run->last >= 0 && run->last < run->first)
-        return error_set(error, RESULT_USAGE, "--last %d is before --first %d", run->last,
-                         run->first);
+        return error_set(error, RESULT_USAGE, "--last %d: expected %d or more, since --first is %d",
+                         run->last, run->first, run->first);
     return RESULT_OK;
 }
 
@@ -34,15 +34,16 @@ static Result check_camera(const Scene *scene, Error *error)
     const RunParams *run = &scene->run;
     const float *up = run->camera_up;
     if (up[0] == 0 && up[1] == 0 && up[2] == 0)
-        return error_set(error, RESULT_USAGE, "--camera-up 0,0,0: expected a direction");
+        return error_set(error, RESULT_USAGE, "--camera-up: got 0,0,0, expected a direction");
     if (run->ease_in + run->ease_out > 1.000001f)
         return error_set(error, RESULT_USAGE,
-                         "--ease-in %g and --ease-out %g: expected 1 at most together",
+                         "--ease-in %g and --ease-out %g: expected a sum of at most 1",
                          (double)run->ease_in, (double)run->ease_out);
     bool fixed_eye = !track_is_given(&scene->eye) && !run->eye.automatic;
     bool fixed_target = !track_is_given(&scene->target) && !run->target.automatic;
     if (fixed_eye && fixed_target && is_same_point(run->eye.value, run->target.value))
-        return error_set(error, RESULT_USAGE, "--eye and --target are the same point");
+        return error_set(error, RESULT_USAGE,
+                         "--eye and --target: the same point: expected two points");
     return RESULT_OK;
 }
 
@@ -62,7 +63,7 @@ static Result check_conflicts(const RunParams *run, Error *error)
     if (run->raster == RASTER_COMPUTE && run->oit != OIT_AUTO) pair = "--raster compute and --oit";
     if (run->raster == RASTER_COMPUTE && run->oit_layers > 0)
         pair = "--raster compute and --oit-layers";
-    if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
+    if (pair) return error_set(error, RESULT_USAGE, "%s: expected only one of them", pair);
     if (run->lod_end > 0 && run->lod_end <= run->lod_start)
         return error_set(error, RESULT_USAGE,
                          "--lod-end %g m: expected more than --lod-start, %g m",
@@ -74,29 +75,6 @@ static bool ends_with(const char *text, const char *end)
 {
     size_t length = strlen(text), end_length = strlen(end);
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
-}
-
-// The length of a conversion for one int: %d, or %0Nd with N from 1 to 9. `text` begins with '%'.
-// Returns 0 for any other conversion.
-static size_t conversion_length(const char *text)
-{
-    if (text[1] == 'd') return 2;
-    return text[1] == '0' && text[2] >= '1' && text[2] <= '9' && text[3] == 'd' ? 4 : 0;
-}
-
-// In the name of a folder or a video, '%' is an ordinary character.
-static Result check_output(const char *output, Error *error)
-{
-    const char *percent = strchr(output, '%');
-    bool literal = ends_with(output, "/") || ends_with(output, ".mp4") ||
-                   ends_with(output, ".webm") || ends_with(output, ".gif") ||
-                   ends_with(output, ".y4m");
-    if (!percent || literal) return RESULT_OK;
-    size_t length = conversion_length(percent);
-    if (length > 0 && !strchr(percent + length, '%')) return RESULT_OK;
-    return error_set(
-        error, RESULT_USAGE,
-        "--output '%.200s': expected one %%d or %%04d (1 to 9 digits) and no other '%%'", output);
 }
 
 static Result check_heads(const Scene *scene, double time, Error *error)
@@ -182,15 +160,16 @@ static Result check_depth(const Scene *scene, Error *error)
     if (tones && run->aov != AOV_NONE) pair = "--tone-map and --aov";
     if (*run->caption && scene_draws_floats(run)) pair = "--caption and .pfm or .exr files";
     if (*run->caption && run->aov != AOV_NONE) pair = "--caption and --aov";
-    if (pair) return error_set(error, RESULT_USAGE, "%s exclude each other", pair);
+    if (pair) return error_set(error, RESULT_USAGE, "%s: expected only one of them", pair);
     return RESULT_OK;
 }
 
 static Result check_floor(const RunParams *run, Error *error)
 {
     if (run->floor != FLOOR_SHADOW || run->shadow != SHADOW_NONE) return RESULT_OK;
-    return error_set(error, RESULT_USAGE,
-                     "--floor shadow: expected shadows, --shadow dom or approx");
+    return error_set(
+        error, RESULT_USAGE,
+        "--floor shadow: has no effect without shadows: expected --shadow dom or approx");
 }
 
 Result scene_check(const Scene *scene, Error *error)
@@ -201,7 +180,6 @@ Result scene_check(const Scene *scene, Error *error)
     TRY(check_frames(run, error));
     TRY(check_camera(scene, error));
     TRY(check_conflicts(run, error));
-    TRY(check_output(run->output, error));
     TRY(check_depth(scene, error));
     TRY(check_floor(run, error));
     return check_formulas(scene, error);
