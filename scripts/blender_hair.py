@@ -245,7 +245,7 @@ def read_usda(path: str) -> Hair:
         text = file.read()
     prims = len(re.findall(r"def BasisCurves\b", text))
     if not text.startswith("#usda") or prims != 1 or "xformOp:" in text or '"cubic"' in text:
-        raise HairError(f"{path}: {prims} prims of curves, or transforms or cubic curves: expected a file that tractrix-convert wrote")
+        raise HairError(f"{path}: has {prims} prims of curves, or transforms, or cubic curves: expected a file that tractrix-convert wrote, with one prim of linear curves")
 
     def array(name: str, kind: type = np.float32) -> Optional[np.ndarray]:
         found = re.search(rf"\] {name} = \[(.*?)\]", text, re.S)
@@ -812,7 +812,7 @@ def camera_keys(context, options: ExportOptions, middle: np.ndarray) -> dict:
     if scene.camera.data.type != "PERSP":
         raise HairError(f"camera '{scene.camera.name}': type {scene.camera.data.type}: expected PERSP, the only type that Tractrix draws")
     if render.pixel_aspect_x != render.pixel_aspect_y:
-        say("camera: pixels that are not square become square")
+        say("camera: its pixels are not square: they become square")
     first, last = options.frames or (scene.frame_current, scene.frame_current)
     poses = []
     for number in range(first, last + 1):
@@ -1417,20 +1417,20 @@ def parser() -> Parser:
     out = commands.add_parser("export", help="hair of the scene, or of a file that Blender imports, to .tfx or .npz")
     out.add_argument("input", nargs="?", default="", help=".abc, .usda, .usdc, .npz, .blend, .glb, .gltf or .fbx; without it the open scene")
     out.add_argument("-o", "--output", default="", help="x.npz, or x.tfx (TressFX 4; text where strands differ in size)")
-    out.add_argument("--frames", default="", help="FIRST:LAST or scene: animation for .npz and the head's motion")
+    out.add_argument("--frames", default="", help="FIRST:LAST or scene: export these frames, for .npz files and the head's motion")
     out.add_argument("--objects", default="", help="names, separated by commas; without: all visible objects with hair")
     out.add_argument("--children", choices=("parents", "children", "all"), default="parents", help="which hair of particle systems")
     out.add_argument("--resample", type=int, default=0, metavar="N", help="N points a strand, at equal distances")
     out.add_argument("--mesh", default="", metavar="x.obj", help="also write the mesh that hair grows on; x.npz: over all frames. Alone, without -o, all visible meshes")
-    out.add_argument("--mesh-object", default="", metavar="NAME", help="the mesh of --mesh, and of texture coordinates")
+    out.add_argument("--mesh-object", default="", metavar="NAME", help="object for --mesh and for texture coordinates")
     out.add_argument("--scene", default="", metavar="x.json", help="also write a scene file: camera, lights, head, look")
     out.add_argument("--scale", type=float, metavar="M", help=SCALE_HELP)
-    out.add_argument("--tolerance", type=float, default=TOLERANCE_M, metavar="M", help="roots may be so far off a rigid head, metres")
+    out.add_argument("--tolerance", type=float, default=TOLERANCE_M, metavar="M", help="largest distance of roots from a rigid motion of the head, metres")
     back = commands.add_parser("import", help="hair and scene files into Blender")
     back.add_argument("input", nargs="?", default="", help=".npz, .usda, .abc, .cache, x_%%04d.tfx or any hair file")
     back.add_argument("--scene", default="", metavar="x.json", help="camera, lights and mesh of a scene file of Tractrix")
-    back.add_argument("--unit", default="", help="of hair files that do not say theirs: m, cm, mm, in or metres")
-    back.add_argument("--up", choices=("y", "z"), help="axis that points up in such files")
+    back.add_argument("--unit", default="", help="unit of hair files that do not state one: m, cm, mm, in or a number of metres")
+    back.add_argument("--up", choices=("y", "z"), help="axis that points up in hair files that do not state one")
     back.add_argument("--scale", type=float, metavar="M", help=SCALE_HELP)
     back.add_argument("-o", "--output", default="", help="x.blend; x.abc or x.usd where Blender was built with them")
     return top

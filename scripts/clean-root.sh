@@ -8,7 +8,7 @@ fail() {
     exit 1
 }
 command -v mmdebstrap >/dev/null || fail "no mmdebstrap here: scripts/setup deb installs it"
-[ "$(id -u)" = 0 ] || fail "not root: expected to be, for a root of its own"
+[ "$(id -u)" = 0 ] || fail "not root: expected root, which mmdebstrap needs"
 work=$(mktemp -d)
 root=$work/root
 # Unmounts first: removing a folder with a mount in it would remove the mounted files.

@@ -64,12 +64,12 @@ def strands(value: Any) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(value, tuple) and len(value) == 2 and array_of("strands[1]", value[1]).ndim == 1:
         points, sizes = points_of("strands[0]", value[0]), numbers("strands[1]", value[1], (None,), np.uint32)
         if sizes.sum(dtype=np.uint64) != len(points):
-            raise error_of(BAD_INPUT, f"strands: sizes of {sizes.sum(dtype=np.uint64)} vertices, {len(points)} points: expected as many")
+            raise error_of(BAD_INPUT, f"strands: the sizes add up to {sizes.sum(dtype=np.uint64)}: expected {len(points)}, the number of points")
         return points, sizes
     if isinstance(value, (list, tuple)):
         pieces = [points_of(f"strands[{index}]", piece) for index, piece in enumerate(value)]
         if not pieces:
-            raise usage("strands: an empty list: expected a strand at least")
+            raise usage("strands: an empty list: expected at least one strand")
         return np.concatenate(pieces), np.array([len(piece) for piece in pieces], np.uint32)
     array = array_of("strands", value)
     if array.ndim != 3 or array.shape[2] not in (3, 4):
@@ -88,7 +88,7 @@ _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 
 def metres(name: str, unit: Any) -> float:
     if unit is None:
-        raise usage(f"{name}: not given: expected m, cm, mm, in or a number of metres, as arrays do not say it themselves")
+        raise usage(f"{name}: not given: expected m, cm, mm, in or a number of metres, because an array does not state its unit")
     length = _METRES.get(unit) if isinstance(unit, str) else unit
     if not isinstance(length, (int, float, np.number)) or not 0 < length < np.inf:
         raise usage(f"{name}: got {unit!r}: expected m, cm, mm, in or a number of metres")

@@ -44,7 +44,7 @@ def limits(pixel_tolerance: float | None = None, max_failing_percent: float | No
     for name, value in (("pixel_tolerance", pixel_tolerance), ("max_failing_percent", max_failing_percent),
                         ("max_flip", max_flip), ("pixels_per_degree", pixels_per_degree)):
         if value is not None and not value >= 0:
-            raise usage(f"{name}: got {value}: expected a number from 0 on")
+            raise usage(f"{name}: got {value}: expected a number from 0")
     if max_flip == 0:  # only equal images pass, but to the library max_flip 0 means "no limit"
         pixel_tolerance = max_failing_percent = max_flip = None
     pixels = max_flip is None or pixel_tolerance is not None or max_failing_percent is not None

@@ -42,7 +42,7 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
     if mesh is not None and not is_path(mesh):
         _set_meshes(scene, mesh, deforms, given, parameters)
     elif deforms:
-        raise usage("deforms: needs mesh=(vertices, triangles)")
+        raise usage("deforms: has no effect: expected mesh=(vertices, triangles) with it")
     elif mesh is not None:
         given["mesh"] = mesh
     for name, value in given.items():
@@ -61,7 +61,7 @@ def _add_strands(scene: Handle, strands: Any, given: dict[str, Any]) -> None:
         color = _arrays.array_of("color", color)
         color = _arrays.numbers("color", color.reshape(-1, color.shape[-1]), (len(points), None))
         if color.shape[1] not in (3, 4):
-            raise usage(f"color: {color.shape[1]} numbers a vertex: expected 3 or 4, linear RGB and opacity")
+            raise usage(f"color: {color.shape[1]} numbers for each vertex: expected 3 or 4: linear RGB, or RGB and opacity")
         color = np.hstack((color, np.ones((len(color), 4 - color.shape[1]), np.float32)))
     if uv is not None:
         uv = _arrays.numbers("uv", uv, (len(sizes), 2))

@@ -104,7 +104,7 @@ class Simulation:
         is if an earlier call has given a pose. `mesh`: the vertices (N, 3) of a deforming mesh at the end of the frame,
         in world space, m, y up. `head` and `mesh` need frames that are a whole number of simulation steps."""
         if head is not None and mesh is not None:
-            raise usage("advance: both head and mesh: expected one of them")
+            raise usage("advance: got both head and mesh, expected only one of them")
         with lock:
             if mesh is not None:
                 vertices = _arrays.numbers("mesh", mesh, (None, 3))
@@ -117,7 +117,7 @@ class Simulation:
         its index in the scene file's list of bodies. `head` or `mesh` as for `advance`, which is for scenes of one
         body. Bodies that are not placed move as the scene says, or stay where they are if they were placed before."""
         if (head is None) == (mesh is None):
-            raise usage("place: expected head or mesh")
+            raise usage("place: expected either head or mesh")
         number = _arrays.index("body", body)
         with lock:
             if mesh is not None:
@@ -198,7 +198,7 @@ def simulate(strands: StrandsLike, *, frames: int | None = None, head: Iterable[
     `frames`: how many frames; may be missing if `head` or `mesh_frames` is given, whose length is then used. The other
     arguments are those of Simulation."""
     if head is not None and mesh_frames is not None:
-        raise usage("simulate: both head and mesh_frames: expected one of them")
+        raise usage("simulate: got both head and mesh_frames, expected only one of them")
     if frames is None and head is None and mesh_frames is None:
         raise usage("frames: not given: expected a number, or head or mesh_frames, which have one for each frame")
     part_of(part)

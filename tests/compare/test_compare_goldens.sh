@@ -36,7 +36,7 @@ one y.tfx' '# only a comment'; do
     goldens 2 --update; one_line; says "$work/list: "; none "$work/result"
 done
 printf 'a x.tfx\n\nb y.tfx\na z.tfx' >"$work/list"
-goldens 2 --update; says "list: line 4: a: the second scene of this name"
+goldens 2 --update; says "list: line 4: a: a second scene with this name"
 printf 'plain %s\nbad assets/fur.tfx --bogus\n' "$small" >"$work/list"
 goldens 2 --update; one_line; says "list: line 2: bad: --bogus: no such option"; none "$work/result"; none "$work/goldens"
 printf 'bad assets/fur.tfx --color nothing\n' >"$work/list"
@@ -44,9 +44,9 @@ goldens 2 --update; one_line; says "list: line 1: bad: --color: got 'nothing'"; 
 
 claim "without goldens it says how to make them, before an image is drawn"
 printf '# a comment\nplain %s\ntwo_%%02d "assets/fur.tfx" --algo none --followers 0 --look plain --size 48x36 --frames 2\r' "$small" >"$work/list"
-goldens 3; one_line; says "$work/goldens: no goldens yet; run with --update"; none "$work/result"
+goldens 3; one_line; says "$work/goldens: no goldens yet: expected --update"; none "$work/result"
 mkdir "$work/goldens"
-goldens 3; one_line; says "no goldens yet; run with --update"
+goldens 3; one_line; says "no goldens yet: expected --update"
 goldens 2 --bogus; one_line; none "$work/result"
 
 claim "goldens are made, and equal images pass"

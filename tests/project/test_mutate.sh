@@ -137,5 +137,5 @@ list "$first" '- z = 3'; run 3 --check; says "expected \`- OLD\` and \`+ NEW\`"
 list 'Anything'; run 3 --check; says "tests/mutants.txt:1: 'Anything': expected"
 run 2 --only '('; says "expected a regular expression"
 run 2 --jobs 0
-list "$first" '- z = 3' '+ z = 4'; run 3 --only nothing; says "nothing: no fault of tests/mutants.txt has it"
+list "$first" '- z = 3' '+ z = 4'; run 3 --only nothing; says "nothing: no fault in tests/mutants.txt contains this text"
 finish

@@ -167,7 +167,7 @@ def test_a_view_keeps_the_memory_that_it_shows(curls):
     ({"unit": "m", "color": [[[1, 0, 0]], [[1, 0], [1]]]}, "color: rows of different lengths"),
     ({"unit": "m", "thickness": [[1, 2], [3]]}, "thickness: rows of different lengths"),
     ({"unit": "m", "thickness": (1, 2, 3)}, "thickness: shape"),
-    ({"unit": "m", "deforms": True}, "deforms: needs"),
+    ({"unit": "m", "deforms": True}, "deforms: has no effect: expected mesh"),
 ])
 def test_wrong_arguments_are_named(curls, arguments, place):
     with pytest.raises(tractrix.TractrixValueError, match=place) as caught:
