@@ -17,7 +17,7 @@ class Parameters(TypedDict, total=False):
     in all others [default auto]"""
     points_per_strand: int
     """points per strand in .ply and .npy files that only list points, and vertices per cubic curve of USD and Alembic
-    files; 0: found from the jumps between strands, and 1 to 4 per curve segment [0 to 65535; default 0]"""
+    files; 0: found from the gaps between strands, and 1 to 4 per curve segment [0 to 65535; default 0]"""
     group: Union[int, Literal["auto"]]
     """read only the strands of this group: Alembic's groom_group_id, a section of a .usda; auto: all strands [0 to
     16777215; default auto]"""
@@ -45,8 +45,8 @@ class Parameters(TypedDict, total=False):
     """head for hair without a mesh: auto fits the bundled head to the roots if they look like a scalp; in scene files
     the default is none [default auto]"""
     aov: Literal["none", "coverage", "depth", "tangent", "strand"]
-    """draw an auxiliary image instead of lit hair: coverage of hair, depth of the nearest strand or mesh, or tangent or
-    an own color of the nearest strand [default none]"""
+    """draw an auxiliary image instead of lit hair: coverage of hair, depth of the nearest strand or mesh, tangent of
+    the nearest strand, or strand: a different color for each strand [default none]"""
     algo: str
     """hair solver; none draws the hair as in the file; list describes the solvers [default hybrid]"""
     variant: str
@@ -178,8 +178,9 @@ class Parameters(TypedDict, total=False):
     wind_shelter: float
     """share of the wind that the head blocks from the hair behind it [0 to 1; default 0]"""
     colliders: str
-    """shapes that hair must not cross, separated by ';'; sphere:x,y,z,radius; capsule:x,y,z,radius,x,y,z,radius;
-    ground:height; plane:nx,ny,nz,height; a place moves with the head unless preceded by world: [m; default none]"""
+    """shapes that keep hair out, separated by ';'; sphere:x,y,z,radius; capsule:x,y,z,radius,x,y,z,radius;
+    ground:height; plane:nx,ny,nz,height; spheres and capsules follow the head unless world: precedes [m; default
+    none]"""
     collide_mesh: bool
     """hair must not cross the mesh, or the head that --scalp fits [default true]"""
     sdf_resolution: int
@@ -242,8 +243,8 @@ class Parameters(TypedDict, total=False):
     tip_length: float
     """share of the strand, from the tip, over which the color changes to --tip-color; 0: none [0 to 1; default 0]"""
     radius: Union[float, Literal["auto"]]
-    """fibre radius at the root; auto: so that on average 3 fibres cover each point of the hair, but at most as thick as
-    still looks like a fibre [1e-07 to 1 m; default auto]"""
+    """fibre radius at the root; auto: such that on average 3 fibres cover each point of the hair, but, except in fur,
+    at most 1/400 of the longest strand [1e-07 to 1 m; default auto]"""
     tip_ratio: float
     """radius at the tip divided by the radius at the root [0 to 1; default 0.3]"""
     opacity: float
@@ -261,8 +262,8 @@ class Parameters(TypedDict, total=False):
     exponent2: float
     """sharpness of the second highlight [1 to 10000; default 9]"""
     cone_angle: float
-    """tilt of the fibre's scales: shifts the two highlights by 2 and 3 times this angle, and transmitted light by 1
-    time [0 to 45 deg; default 7.5]"""
+    """tilt of the fibre's scales: shifts the two highlights by 2 and 3 times this angle, and transmitted light by this
+    angle [0 to 45 deg; default 7.5]"""
     melanin: Union[float, Literal["auto"]]
     """physical alternative to --color: amount of pigment; 0.1 blond, 0.2 dark blond, 0.6 brown, 1.3 dark brown, 3
     black; auto: use --color [0 to 100; default auto]"""
@@ -272,7 +273,7 @@ class Parameters(TypedDict, total=False):
     """marschner: refractive index of the fibre [1.05 to 3; default 1.55]"""
     roughness: float
     """marschner: width of the first highlight along the fibre (beta of R); transmitted light has half this width, light
-    reflected inside twice [1 to 30 deg; default 5]"""
+    that is reflected inside the fibre twice this width [1 to 30 deg; default 5]"""
     lobes: Literal["energy", "gauss"]
     """marschner: shape of the lobes along the fibre: energy conserves energy, gauss is the published form of 2003
     [default energy]"""
@@ -369,13 +370,13 @@ class Parameters(TypedDict, total=False):
     """rasteriser: quads (triangles into sorted lists), blocks (compositing on the CPU), compute (the same on the GPU);
     auto: blocks on a CPU driver, compute on a GPU, quads if --oit is given [default auto]"""
     oit: Literal["auto", "abuffer", "none"]
-    """how --raster quads blends the fragments of a pixel: abuffer sorts the nearest and blends the rest behind them
-    unsorted, none sorts nothing; the other rasterisers always sort all fragments [default auto]"""
+    """how --raster quads blends the fragments of a pixel: abuffer sorts the nearest --oit-layers and blends the rest
+    behind them unsorted, none sorts nothing; the other rasterisers always sort all [default auto]"""
     oit_layers: int
     """fragments per pixel that --oit abuffer sorts; 0: 8, or 16 with --samples [0 to 64; default 0]"""
     least_seen: float
-    """--raster blocks skips work below this share of a pixel: ribbons seen less are not shaded, up to 7 % of a pixel's
-    hair, pixels that let less than twice as much light through are finished; 0: off [0 to 0.5; default 0.01]"""
+    """--raster blocks: smallest visible share of a pixel for which a ribbon is shaded; at most 7 % of a pixel's hair
+    stays unshaded; pixels that transmit less than twice this share are finished; 0: off [0 to 0.5; default 0.01]"""
     thickness: Numbers
     """of all vertices, one strand behind the other, relative to its mean, which `radius` gives"""
     uv: Numbers

@@ -29,7 +29,10 @@ static void read_transform(Ogawa *file, const OgawaObject *object, AlembicTransf
     for (size_t i = 0; number && i < count && reader_ok(reader); ++i) {
         uint32_t step = number[i] >= 0 && number[i] < 256 ? (uint32_t)number[i] >> 4 : STEPS;
         if (step >= STEPS || i >= sizeof transform->step)
-            reader_fail(reader, "%s: step %zu of a transform is not known", object->path, i);
+            reader_fail(reader,
+                        "%s: operation %zu of a transform is unknown, or beyond the limit of %zu "
+                        "operations",
+                        object->path, i, sizeof transform->step);
         else
             transform->step[transform->step_count++] = (uint8_t)step,
             transform->width += STEP_WIDTHS[step];
@@ -41,7 +44,10 @@ static void read_transform(Ogawa *file, const OgawaObject *object, AlembicTransf
     file->budget -= (double)bytes;
     if (moves && reader_ok(reader) && file->budget >= 0) transform->value = malloc(bytes + 1);
     if (moves && !transform->value)
-        reader_fail(reader, "%s: %u samples of a transform are too many", object->path, samples);
+        reader_fail(
+            reader,
+            "%s: the %u samples of a transform take more memory than a file of this size may use",
+            object->path, samples);
     for (uint32_t i = 0; i < samples && reader_ok(reader); ++i) {
         number = ogawa_numbers(file, values, i, &count);
         if (number && count < transform->width)

@@ -51,7 +51,7 @@ Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
     if ((S_ISCHR(status.st_mode) && !isatty(descriptor)) || S_ISBLK(status.st_mode)) {
         close(descriptor);
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: a device, which may have no end: expected a file or a pipe", path);
+                         "%s: is a device, which may never end: expected a file or a pipe", path);
     }
     claims_note_input(path, &status);
     // One byte more than the size, so that read() reports the end of the file before the buffer

@@ -79,7 +79,7 @@ static Result check_header(ChunkFile *file, const char *magic, Error *error)
         return error_set(error, RESULT_BAD_INPUT, "%s: byte 0: expected %s", file->path, magic);
     memcpy(&version, header + MAGIC_BYTES, sizeof version);
     if (le32toh(version) == VERSION) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%s: version %u, this program reads %d", file->path,
+    return error_set(error, RESULT_BAD_INPUT, "%s: version %u: expected version %d", file->path,
                      le32toh(version), VERSION);
 }
 
@@ -138,7 +138,7 @@ Result chunk_read(ChunkFile *file, const Chunk *chunk, Bytes *payload, Error *er
     if (!chunk_file_read_raw(file, chunk->at + CHUNK_HEADER_BYTES, payload->data, payload->size))
         result = fail_to_read(file, chunk->at, "the file ends within this chunk", error);
     else if (libdeflate_crc32(0, payload->data, payload->size) != chunk->checksum)
-        result = fail_at(file, chunk->at, "damaged, the checksum differs", error);
+        result = fail_at(file, chunk->at, "damaged: the checksum does not match", error);
     if (result != RESULT_OK) bytes_destroy(payload);
     return result;
 }

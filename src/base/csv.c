@@ -26,8 +26,9 @@ static Result cut_lines(Csv *csv, Error *error)
             ++count;
         }
         if (count != csv->column_count)
-            return error_set(error, RESULT_BAD_INPUT, "%s:%zu: %zu fields, the header has %zu",
-                             csv->path, number, count, csv->column_count);
+            return error_set(error, RESULT_BAD_INPUT,
+                             "%s:%zu: %zu fields: expected %zu, as in the header", csv->path,
+                             number, count, csv->column_count);
         csv->row_count += number > 1;
     }
     return RESULT_OK;
@@ -85,6 +86,6 @@ Result csv_number(const Csv *csv, size_t row, size_t column, double *value, Erro
     char *end;
     *value = strtod(text, &end);
     if (end != text && *end == 0) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%s:%zu: %s: expected a number, got '%s'", csv->path,
+    return error_set(error, RESULT_BAD_INPUT, "%s:%zu: %s: got '%s', expected a number", csv->path,
                      row + 2, csv->column[column], text);
 }

@@ -103,8 +103,8 @@ static Result refuse_type(Reader *reader, const char *type)
 {
     if (strchr(type, 'O'))
         return reader_fail(reader,
-                           "pickled objects ('%s') are not read, they can run programs: "
-                           "expected numbers",
+                           "pickled Python objects ('%s'), which are not read because they can run "
+                           "programs: expected numbers",
                            type);
     return reader_fail(reader, "elements of type '%s': expected floats '<f2', '<f4' or '<f8'",
                        *type ? type : "(several fields)");
@@ -161,7 +161,7 @@ Result npy_array_read(NpyArray *array, Reader *reader)
     *array = (NpyArray){0};
     if (!reader_check_array(reader, reader->at, 1, 8, "the array's header")) return reader->result;
     const uint8_t *head = reader->data + reader->at;
-    if (memcmp(head, MAGIC, 6) != 0) return reader_fail(reader, "not an array of numpy (.npy)");
+    if (memcmp(head, MAGIC, 6) != 0) return reader_fail(reader, "not a numpy array (.npy)");
     if (head[6] < 1 || head[6] > 3)
         return reader_fail(reader, "version %u.%u of .npy: expected 1, 2 or 3", head[6], head[7]);
     reader->at += 8;

@@ -32,7 +32,7 @@ static Block open_group(Reader *reader, uint64_t place)
     Block group = {place, 0};
     if (!reader_ok(reader)) return group;
     if (place & DATA_BIT) {
-        reader_fail(reader, "data: expected a group");
+        reader_fail(reader, "got data, expected a group");
         return group;
     }
     if (place) group.size = read_number(reader, place);
@@ -52,7 +52,7 @@ static Block open_data(Reader *reader, uint64_t place)
     Block data = {place & ~DATA_BIT, 0};
     if (!reader_ok(reader)) return data;
     if (!(place & DATA_BIT)) {
-        reader_fail(reader, "a group: expected data");
+        reader_fail(reader, "got a group, expected data");
         return data;
     }
     if (data.at) data.size = read_number(reader, data.at);
@@ -68,7 +68,8 @@ static bool is_new(Ogawa *file, uint64_t at)
     if (!reader_ok(reader)) return false;
     if (at >= reader->size || file->seen[at / 8] & 1u << at % 8) {
         reader->at = at < reader->size ? (size_t)at : reader->size;
-        reader_fail(reader, "a group within itself, or twice in the file: expected a tree");
+        reader_fail(reader,
+                    "a group contains itself or has two parents: expected a tree of groups");
         return false;
     }
     file->seen[at / 8] |= (uint8_t)(1u << at % 8);
@@ -178,9 +179,10 @@ static void take_property(Cursor *cursor, OgawaProperty *property)
         if (info & 0x100) property->sampling = take(cursor, width);
         if (property->last && (property->first == 0 || property->last < property->first ||
                                property->last >= property->samples))
-            reader_fail(cursor->reader,
-                        "samples %u to %u change, of %u: expected a range of existing samples",
-                        property->first, property->last, property->samples);
+            reader_fail(
+                cursor->reader,
+                "samples %u to %u change, but there are only %u samples: expected existing samples",
+                property->first, property->last, property->samples);
     }
     uint32_t length = take(cursor, width);
     const char *name = take_text(cursor, length);
@@ -293,8 +295,9 @@ double *ogawa_numbers(Ogawa *file, const OgawaProperty *property, uint32_t sampl
     if (property->extent > 1) numbers -= numbers % property->extent;
     file->budget -= (double)numbers * (double)sizeof(double);
     if (reader_ok(reader) && file->budget < 0)
-        reader_fail(reader, "'%s': its samples need more than %.0f times the file", property->name,
-                    MOST_EACH_BYTE);
+        reader_fail(reader,
+                    "'%s': its samples need more memory than %.0f times the size of the file",
+                    property->name, MOST_EACH_BYTE);
     double *number = reader_ok(reader) ? malloc((size_t)numbers * sizeof *number + 1) : NULL;
     if (!number) {
         reader_fail_memory(reader);
@@ -318,7 +321,9 @@ static double *expand(Ogawa *file, const OgawaProperty *indices, double *value, 
     if (index && !all) reader_fail_memory(reader);
     for (size_t i = 0; all && i < wanted; ++i) {
         if (!(index[i] >= 0 && index[i] < (double)items)) {
-            reader_fail(reader, "'%s': index %g of %zu values", name, index[i], items);
+            reader_fail(reader,
+                        "'%s': index %g: expected a whole number below %zu, the number of values",
+                        name, index[i], items);
             break;
         }
         memcpy(all + i * extent, value + (size_t)index[i] * extent, extent * sizeof *all);
@@ -372,7 +377,7 @@ static void read_samplings(Ogawa *file, uint64_t place)
         at += 16;
         if (count > (end - at) / 8) {
             reader->at = (size_t)at;
-            reader_fail(reader, "%u sample times: more than the file holds", count);
+            reader_fail(reader, "%u sample times: the file is too small for so many", count);
             break;
         }
         sampling->time = malloc(count * sizeof *sampling->time + 1);
@@ -436,10 +441,11 @@ bool ogawa_allows(const Ogawa *file, uint64_t samples, uint64_t vertices)
 {
     double bytes = 12.0 * (double)samples * (double)vertices;
     if (bytes <= MOST_PLACED_EACH_BYTE * (double)file->reader->size + MOST_ANYHOW) return true;
-    reader_fail(file->reader,
-                "%llu samples of %llu vertices need %.0f MB: more than %.0f times the file",
-                (unsigned long long)samples, (unsigned long long)vertices, bytes / 1e6,
-                MOST_PLACED_EACH_BYTE);
+    reader_fail(
+        file->reader,
+        "%llu samples of %llu vertices need %.0f MB: more than %.0f times the size of the file",
+        (unsigned long long)samples, (unsigned long long)vertices, bytes / 1e6,
+        MOST_PLACED_EACH_BYTE);
     return false;
 }
 
@@ -526,12 +532,14 @@ Result ogawa_open(Ogawa *file, Reader *reader)
                     .budget = MOST_EACH_BYTE * (double)reader->size + MOST_ANYHOW};
     reader->at = 5;
     if (reader->size < 16 || reader->data[5] != 0xff)
-        return reader_fail(reader, "the file was not closed: expected a complete one");
+        return reader_fail(
+            reader, "the program that wrote the file did not finish it: expected a complete file");
     file->seen = calloc(reader->size / 8 + 1, 1);
     if (!file->seen) return reader_fail_memory(reader);
     Block top = open_group(reader, read_number(reader, 8));
     if (reader_ok(reader) && top.size < 6)
-        return reader_fail(reader, "%llu parts: expected 6", (unsigned long long)top.size);
+        return reader_fail(reader, "%llu groups at the top level: expected 6",
+                           (unsigned long long)top.size);
     read_unit(file, child_of(reader, top, 3));
     read_samplings(file, child_of(reader, top, 4));
     file->texts = child_of(reader, top, 5);

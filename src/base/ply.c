@@ -62,7 +62,8 @@ static void read_property(PlyFile *ply)
 {
     Reader *reader = ply->reader;
     char name[PLY_NAME_SIZE] = "";
-    if (ply->element_count == 0) reader_fail(reader, "a property before any element");
+    if (ply->element_count == 0)
+        reader_fail(reader, "a property before the first element: expected an element");
     if (ply->property_count == PLY_MOST_PROPERTIES)
         reader_fail(reader, "more than %d properties", PLY_MOST_PROPERTIES);
     if (!reader_ok(reader)) return;
@@ -173,7 +174,7 @@ static uint32_t read_list(PlyFile *ply, const PlyProperty *property, uint32_t *l
     Reader *reader = ply->reader;
     double count = read_number(ply, property->count_type, true);
     uint32_t size = PLY_TYPE_INFO[property->type].size;
-    if (count < 0) reader_fail(reader, "a list of %g numbers", count);
+    if (count < 0) reader_fail(reader, "a list has the length %g: expected a number from 0", count);
     if (!reader_ok(reader)) return 0;
     uint64_t i = 0;
     for (; i < (uint64_t)count && (i < most || ply->text) && reader_ok(reader); i++) {
@@ -227,7 +228,8 @@ bool ply_check_count(PlyFile *ply, const PlyElement *element)
 {
     uint64_t size = least_size(ply, element), left = reader_left(ply->reader) + ply->text;
     if (size == 0 || element->count <= left / size) return true;
-    reader_fail(ply->reader, "%u times '%s' need %llu bytes at least, the file has %zu more",
+    reader_fail(ply->reader,
+                "%u elements '%s' need at least %llu bytes, but only %zu are left in the file",
                 element->count, element->name, (unsigned long long)size * element->count,
                 reader_left(ply->reader));
     return false;

@@ -54,7 +54,7 @@ static const uint8_t *take_bytes(Reader *reader, size_t size, const char *what)
 {
     if (!reader_ok(reader)) return NULL;
     if (reader_left(reader) < size) {
-        reader_fail(reader, "%s needs %zu bytes, the file has %zu more", what, size,
+        reader_fail(reader, "%s needs %zu bytes, but only %zu are left in the file", what, size,
                     reader_left(reader));
         return NULL;
     }
@@ -94,12 +94,14 @@ bool reader_check_array(Reader *reader, uint64_t start, uint64_t count, uint64_t
     uint64_t room = start <= reader->size ? reader->size - start : 0;
     if (start <= reader->size && count <= room / stride) return true;
     if (start > reader->size)
-        reader_fail(reader, "%s start at byte %llu, the file ends at byte %zu", what,
+        reader_fail(reader, "%s start at byte %llu, but the file ends at byte %zu", what,
                     (unsigned long long)start, reader->size);
     else
-        reader_fail(reader, "%s need %llu times %llu bytes from byte %llu on, the file has %llu",
-                    what, (unsigned long long)count, (unsigned long long)stride,
-                    (unsigned long long)start, (unsigned long long)room);
+        reader_fail(
+            reader,
+            "%s need %llu times %llu bytes from byte %llu on, but the file has only %llu there",
+            what, (unsigned long long)count, (unsigned long long)stride, (unsigned long long)start,
+            (unsigned long long)room);
     return false;
 }
 

@@ -37,8 +37,7 @@ void usd_samples_read(UsdSamples *samples, Reader *reader, bool timed, bool all)
     usd_text_expect(reader, '{');
     for (; usd_text_next_sample(reader, &time); ++samples->in_file) {
         if (time <= last)
-            reader_fail(reader,
-                        "time sample %g: expected a later time than that of the sample before",
+            reader_fail(reader, "time sample %g: expected a time after that of the previous sample",
                         time);
         last = time;
         if (samples->in_file > 0 && !all)

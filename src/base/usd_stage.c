@@ -268,9 +268,9 @@ Result usd_stage_read(UsdStage *stage, Reader *reader, const UsdSchema *schema, 
         (UsdStage){.reader = reader, .schema = schema, .to = to, .unit = 0.01f}; // USD's default
     read_layer(stage);
     read_prims(stage);
-    if (reader->at < reader->size) reader_fail(reader, "a byte 0 within the text");
+    if (reader->at < reader->size) reader_fail(reader, "a zero byte: expected text");
     if (reader_ok(reader) && !(stage->unit > 0))
-        reader_fail(reader, "metersPerUnit is not above 0");
+        reader_fail(reader, "metersPerUnit: expected a number above 0");
     return reader->result;
 }
 

@@ -93,7 +93,7 @@ void usd_text_read_string(Reader *reader, char text[USD_WORD_SIZE])
         usd_text_step(reader);
     }
     text[length] = 0;
-    if (found < marks) reader_fail(reader, "a string without an end");
+    if (found < marks) reader_fail(reader, "a string is not closed: expected a quotation mark");
 }
 
 void usd_text_skip_value(Reader *reader)
@@ -119,7 +119,7 @@ void usd_text_skip_value(Reader *reader)
             usd_text_read_word(reader, text);
         }
     } while (depth > 0 && reader_ok(reader) && usd_text_here(reader));
-    if (depth > 0) reader_fail(reader, "brackets without an end");
+    if (depth > 0) reader_fail(reader, "a bracket is not closed: expected the closing bracket");
 }
 
 // With `single` the text is rounded directly to float32, not by way of double.

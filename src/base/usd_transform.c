@@ -47,7 +47,7 @@ static void add_sample(UsdTrack *track, Reader *reader, double time)
         track->room = room;
     }
     if (track->count && track->timed && time <= track->time[track->count - 1])
-        reader_fail(reader, "time sample %g: expected a later time than that of the sample before",
+        reader_fail(reader, "time sample %g: expected a time after that of the previous sample",
                     time);
     track->time[track->count] = time;
     memset(track->value[track->count], 0, sizeof *track->value);

@@ -31,7 +31,9 @@ static void find_directory(Reader *reader, uint64_t *count, uint64_t *at)
 {
     size_t end = find_end(reader);
     if (end == reader->size) {
-        reader_fail(reader, "the zip archive has no directory: it is cut off");
+        reader_fail(
+            reader,
+            "the zip archive has no directory: expected a complete archive, this one is cut off");
         return;
     }
     const uint8_t *record = reader->data + end;
@@ -113,7 +115,7 @@ Result zip_open(Zip *zip, Reader *reader)
     if (!reader_check_array(reader, at, count, CENTRAL_SIZE, "the zip directory"))
         return reader->result;
     if (count > ZIP_MOST_FILES)
-        return reader_fail(reader, "%llu files in a zip archive: at most %d are read",
+        return reader_fail(reader, "%llu files in a zip archive: expected at most %d",
                            (unsigned long long)count, ZIP_MOST_FILES);
     zip->file = calloc(count + 1, sizeof *zip->file);
     if (!zip->file) return reader_fail_memory(reader);
@@ -141,7 +143,7 @@ static Result unpack(Zip *zip, const ZipFile *file, uint8_t *to)
     libdeflate_free_decompressor(decompressor);
     if (result != LIBDEFLATE_SUCCESS || got != file->size)
         return reader_fail(zip->reader,
-                           "'%s' does not unpack to the %llu bytes that the archive names",
+                           "'%s' does not unpack to %llu bytes, the size that the archive states",
                            file->name, (unsigned long long)file->size);
     return RESULT_OK;
 }
@@ -251,6 +253,6 @@ Result zip_finish(ZipWriter *writer, Error *error)
     const char *path = writer->out->path;
     *writer = (ZipWriter){0};
     if (!failed) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: no memory, or beyond the 4 GiB of a zip archive",
-                     path);
+    return error_set(error, RESULT_FAILED,
+                     "%s: no memory, or more than the 4 GiB that a zip archive can hold", path);
 }

@@ -53,7 +53,8 @@ static const Option OPTIONS[] = {
     {"oit", 0, OPTION_STRING, AT(oit), "WORD", 0, 0,
      "image, --raster quads: abuffer or none (default auto: abuffer)"},
     {"layers", 0, OPTION_WHOLE, AT(bench.scheme.layers), "K", 0, 64,
-     "image, --raster quads: fragments per pixel that are sorted, 1 to 64 (default 0: 8)"},
+     "image, --raster quads: fragments per pixel that are sorted, 1 to 64 (default 0: 8, or 16 "
+     "with --samples)"},
     {"samples", 0, OPTION_WHOLE, AT(bench.scheme.samples), "N", 1, 4,
      "image: 2 or 4 renders 2 x 2 or 4 x 4 samples per pixel (default 1)"},
     {"shadow", 0, OPTION_STRING, AT(shadow), "WORD", 0, 0,
@@ -69,11 +70,12 @@ static const Option OPTIONS[] = {
     {"seed", 0, OPTION_WHOLE, AT(bench.stress.seed), "N", 0, 2e9,
      "stress: start of the random numbers (default 1)"},
     {"case", 0, OPTION_STRING, AT(bench.case_name), "TEXT", 0, 0,
-     "stress: run this case of --algo, as a failed case is printed, or 'plain'; light: only these "
-     "cases, separated by commas"},
+     "stress: run only this case of --algo: the text that is printed for a failed case, or "
+     "'plain'; light: only these cases, separated by commas"},
     {"way", 0, OPTION_STRING, AT(bench.ways), "LIST", 0, 0,
-     "light: only these methods of computing light, or all of tractrix-render (default: methods "
-     "with a stated bound); 'traced one', 'traced': by a path tracer, one bounce and 64"},
+     "light: only these methods of computing light, separated by commas, or all (default: methods "
+     "with a stated bound); 'traced one' and 'traced' are a path tracer with one bounce and with "
+     "64"},
     {"render", 0, OPTION_STRING, AT(bench.render), "TEXT", 0, 0,
      "light, groom: options of tractrix-render for every scene, for example --render='--smooth 3'"},
     {"picture", 0, OPTION_STRING, AT(bench.picture), "FILE.png", 0, 0,
@@ -185,7 +187,7 @@ static Result check_settings(const BenchOptions *options, Error *error)
         params_destroy_section(&params);
     }
     if (result == RESULT_OK && trial_list(&method, each) == METHODS_MOST)
-        return error_set(error, RESULT_USAGE, "--algo: expected fewer than %d solvers",
+        return error_set(error, RESULT_USAGE, "--algo: too many solvers: expected fewer than %d",
                          METHODS_MOST);
     return result;
 }
@@ -222,7 +224,8 @@ static Result read_size(const char *text, int size[2], Error *error)
     if (sscanf(text, "%dx%d%c", &size[0], &size[1], &rest) == 2 && size[0] >= 1 && size[1] >= 1 &&
         size[0] <= 16384 && size[1] <= 16384)
         return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "--size: expected WxH, each 1 to 16384, got '%s'", text);
+    return error_set(error, RESULT_USAGE, "--size: got '%s', expected WxH, each from 1 to 16384",
+                     text);
 }
 
 static Result read_words(Values *values, Error *error)
@@ -287,18 +290,18 @@ Result bench_options_read(BenchOptions *options, int argc, char **argv,
     int first = 0;
     values.bench.line = shell_join_line("tractrix-bench", argc, argv); // before its order changes
     list_rows(&rows);
-    const OptionsProgram program = {.name = "tractrix-bench",
-                                    .summary = "measure accuracy and speed",
-                                    .synopsis = "COMMAND [OPTION]... [HAIR_FILE]...",
-                                    .description =
-                                        "Measures how accurate and how fast this program is, a "
-                                        "line for each result.",
-                                    .commands = commands,
-                                    .options = rows.option,
-                                    .option_count = OWN_COUNT + rows.params,
-                                    .notes = NOTES,
-                                    .status = STATUS,
-                                    .examples = EXAMPLES};
+    const OptionsProgram program = {
+        .name = "tractrix-bench",
+        .summary = "measure accuracy and speed",
+        .synopsis = "COMMAND [OPTION]... [HAIR_FILE]...",
+        .description =
+            "Measures how accurate and how fast Tractrix is, and prints a line for each result.",
+        .commands = commands,
+        .options = rows.option,
+        .option_count = OWN_COUNT + rows.params,
+        .notes = NOTES,
+        .status = STATUS,
+        .examples = EXAMPLES};
     Result result = options_parse(&program, &values, argc, argv, &first, &values.bench.done, error);
     if (!values.bench.done) THEN(result, read_words(&values, error));
     if (!values.bench.done) THEN(result, join_settings(&values, &rows, error));

@@ -44,7 +44,8 @@ static Result execute(char **words, const ChildRun *run, double *wall_ms, Error 
     free(kept);
     // Exit status 1 means that a bound is broken. This process reports that itself.
     if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) <= 1) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "tractrix-bench: the process of a measurement failed");
+    return error_set(error, RESULT_FAILED,
+                     "the measuring process failed: its own message is above");
 }
 
 Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *error)
@@ -88,6 +89,7 @@ Result child_run(const ChildRun *run, json_t **row, double *wall_ms, Error *erro
     json_decref(rows);
     outfile_remove(path, NULL);
     free(settings);
-    if (!*row) THEN(result, error_set(error, RESULT_FAILED, "a measuring process left no row"));
+    if (!*row)
+        THEN(result, error_set(error, RESULT_FAILED, "the measuring process wrote no result"));
     return result;
 }

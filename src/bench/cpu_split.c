@@ -44,7 +44,9 @@ Result cpu_split_create(CpuSplit *split, const Strands *strands, Error *error)
                         .gravity = {0, -9.81f, 0}};
     for (uint32_t s = 0; s < strands->strand_count; ++s)
         if (strands->first[s + 1] - strands->first[s] != split->link_count + 1)
-            return error_set(error, RESULT_USAGE, "strands of one vertex count are needed");
+            return error_set(error, RESULT_USAGE,
+                             "part c: strands have different numbers of vertices: expected the "
+                             "same number in all");
     split->tile_count = (split->strand_count + W - 1) / W;
     split->links = calloc((size_t)split->tile_count * split->link_count * LINK_ROWS * W, 4);
     split->ends = calloc((size_t)split->tile_count * END_ROWS * W, 4);

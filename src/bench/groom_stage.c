@@ -28,7 +28,8 @@ static Result read_scene(GroomStage *stage, const GroomSetup *setup, Error *erro
                                                   ""};
     TRY(scene_words_read(scene, &stage->words, names, flags, error));
     if (scene->file)
-        return error_set(error, RESULT_USAGE, "%s is a scene file: expected hair", scene->file);
+        return error_set(error, RESULT_USAGE, "%s: is a scene file: expected a hair file",
+                         scene->file);
     return trial_apply(&scene->sections[0].params, &setup->method, error);
 }
 
@@ -103,7 +104,8 @@ static Result find_locks(GroomStage *stage, Error *error)
     uint64_t points = guides->particle_count + followers->particle_count;
     uint32_t strands = guides->strand_count + followers->strand_count;
     if (points > UINT32_MAX)
-        return error_set(error, RESULT_USAGE, "%llu vertices with followers: expected fewer",
+        return error_set(error, RESULT_USAGE,
+                         "%llu vertices with followers: expected fewer than 2^32",
                          (unsigned long long)points);
     uint32_t *first = calloc((size_t)strands + 1, sizeof *first);
     stage->drawn = calloc(points + 1, sizeof *stage->drawn);

@@ -95,11 +95,10 @@ static Result open_stage(LightStage *stage, const Gpu *gpu, const LightCase *lit
     const int *size = stage->scene.run.size;
     if (size[0] == lit->columns * LIGHT_BLOCK_PX && size[1] == lit->rows * LIGHT_BLOCK_PX)
         return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT,
-                     "%s: %d x %d blocks of %d pixels: expected those of an image of %dx%d, as %s "
-                     "has it",
-                     lit->table, lit->columns, lit->rows, LIGHT_BLOCK_PX, size[0], size[1],
-                     lit->scene);
+    return error_set(
+        error, RESULT_BAD_INPUT,
+        "%s: %d x %d blocks of %d pixels: expected blocks for images of %dx%d, the size in %s",
+        lit->table, lit->columns, lit->rows, LIGHT_BLOCK_PX, size[0], size[1], lit->scene);
 }
 
 static Result time_frames(LightStage *stage, bool moved, int frames, Times *times, Error *error)
@@ -417,8 +416,10 @@ static Result open_sheet(LightRun *run, Error *error)
     int columns = 1 + (run->options->before != NULL);
     for (int w = 0; w < WAY_COUNT; ++w) columns += is_wanted(run->options, &WAYS[w]);
     if (!run->options->picture)
-        return run->options->before ? error_set(error, RESULT_USAGE, "--before: needs --picture")
-                                    : RESULT_OK;
+        return run->options->before
+                   ? error_set(error, RESULT_USAGE,
+                               "--before: has no effect: expected --picture with it")
+                   : RESULT_OK;
     return image_sheet_create(&run->sheet, columns, (int)run->cases.count, &tile, error);
 }
 

@@ -68,13 +68,16 @@ static Result read_channel(LightCase *lit, const Csv *csv, LightTable table, int
                              csv->path, line + 2, name, csv_text(csv, line, column), most);
         double *block = &lit->blocks[table][(size_t)y * (size_t)lit->columns + (size_t)x][channel];
         if (!isnan(*block))
-            return error_set(error, RESULT_BAD_INPUT, "%s:%zu: a second line for block %d, %d",
-                             csv->path, line + 2, x, y);
+            return error_set(
+                error, RESULT_BAD_INPUT,
+                "%s:%zu: a second line for block %d, %d: expected one line for each block",
+                csv->path, line + 2, x, y);
         *block = value;
         sum += value;
     }
     if (!(sum > 0))
-        return error_set(error, RESULT_BAD_INPUT, "%s: %s is 0 in every block, expected light",
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: %s is 0 in every block: expected light in one block or more",
                          csv->path, name);
     return RESULT_OK;
 }
@@ -162,8 +165,8 @@ static Result check_names(const LightCases *cases, const char *folder, const cha
             found |= strlen(cases->list[i].name) == (size_t)length &&
                      strncmp(cases->list[i].name, at, (size_t)length) == 0;
         if (!found)
-            return error_set(error, RESULT_USAGE, "--case: no case '%.*s' in %s", length, at,
-                             folder);
+            return error_set(error, RESULT_USAGE, "--case: no case '%.*s' in the folder %s", length,
+                             at, folder);
     }
     return RESULT_OK;
 }

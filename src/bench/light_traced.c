@@ -31,10 +31,10 @@ static Result take_section(const SectionParams *params, const Strands *strands, 
     float color[3];
     if (!is_plain(params, strands, hair))
         return error_set(error, RESULT_USAGE,
-                         "--way traced: expected sections with algo none, shading marschner, "
-                         "cone_angle 0, tip_ratio 1, opacity 1, color_variation and "
-                         "warmth_variation 0, without followers and without colours, opacity or "
-                         "thickness of a file");
+                         "--way traced: a section has options that the path tracer does not "
+                         "support: expected algo none, shading marschner, cone_angle 0, tip_ratio "
+                         "1, opacity 1, color_variation 0 and warmth_variation 0, no followers, "
+                         "and no colours, opacity or thickness from a file");
     paint_color(params, color);
     *item = (LightReferenceItem){
         .strands = strands,

@@ -32,7 +32,7 @@ static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *e
     if (*arguments->method.settings)
         return error_set(
             error, RESULT_USAGE,
-            "stress: %s: the stress test draws it at random: expected --case to set it",
+            "stress: %s: the stress test chooses this value at random: expected --case to set it",
             arguments->method.settings);
     return stress_search(gpu, &options, &arguments->output, stdout, error);
 }
@@ -364,30 +364,37 @@ static const struct {
     const char *help;
 } COMMANDS[] = {
     {"step", test_vectors_run_steps,
-     "tractrix steps of --vectors against their exact results, by our rule and by the thesis's"},
+     "errors of one tractrix step against exact results (--vectors), by the rule of this program "
+     "and by that of the thesis"},
     {"chain", test_vectors_run_chains,
-     "chain pulls of --vectors FILE.csv (FILE_cases.csv beside it) against theirs"},
+     "errors of pulled chains against exact results (--vectors FILE.csv, with FILE_cases.csv "
+     "beside it)"},
     {"accuracy", accuracy_run,
-     "solvers against what is known exactly. Parts: motions, work (time beside error), pendulum, "
-     "static, drift, beam, stretch, energy, rate, scale"},
+     "errors of solvers against exact solutions. Parts: motions, work (time beside error), "
+     "pendulum, static, drift, beam, stretch, energy, rate, scale"},
     {"speed", speed_run,
-     "solvers' steps. Parts: memory, sets (--set, --tfx or all of the thesis's; files named; "
-     "drawing with --size), c (split in plain C), strands, vertices, threads, start"},
+     "times of the solvers' steps. Parts: memory, sets (--set, --tfx, or all test sets of the "
+     "thesis and the named files; with --size also drawing), c (split in plain C), strands, "
+     "vertices, threads, start"},
     {"scenes", scenes_run,
-     "frames with followers, asleep, and of two sections: --set NAME (default 10k16), --algo"},
+     "times of whole frames in several scenes: followers, colliders, sleeping hair, two sections; "
+     "--set NAME (default 10k16), --algo"},
     {"stress", run_stress,
-     "random circumstances for every solver; the smallest case that breaks a rule, if one does"},
+     "random cases for every solver; prints the smallest case that breaks a rule"},
     {"image", images_run_one,
-     "drawing --set NAME or --tfx FILE: its time, and its error against the exact image"},
+     "time of drawing --set NAME or --tfx FILE, and the error against an exact image"},
     {"images", images_run,
-     "the same for every scheme and preset; parts: straight, curls, fur, files (those named)"},
+     "the same for all rasterisers and presets; parts: straight, curls, fur, files (the named "
+     "files)"},
     {"light", light_run,
-     "light in hair against a path tracer's, by each way to compute it: --way, --case, --picture"},
+     "light in hair compared with a path tracer, for each method of computing it: --way, --case, "
+     "--picture"},
     {"groom", groom_run,
-     "what becomes of hair files at rest and in a shake of the head: --mesh, --algo, --rates, "
+     "how the hair of files moves at rest and when the head shakes: --mesh, --algo, --rates, "
      "--strands; parts: rest, shake, speed"},
     {"page", page_run,
-     "rows that --csv wrote, on one machine or several, as a page: FILE.csv... --html FILE.html"},
+     "makes a page of rows that --csv wrote, on one machine or several: FILE.csv... --html "
+     "FILE.html"},
     {"shaders", run_shaders, "compiles every shader variant with warnings as errors"},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
@@ -420,7 +427,8 @@ static Result run_command(BenchOptions *options, Error *error)
     const char *names[COMMAND_COUNT];
     size_t command = 0;
     Gpu gpu;
-    if (options->file_count == 0) return error_set(error, RESULT_USAGE, "no command; see --help");
+    if (options->file_count == 0)
+        return error_set(error, RESULT_USAGE, "no command: expected one of those in --help");
     const char *word = *options->files++;
     --options->file_count;
     for (size_t i = 0; i < COMMAND_COUNT; ++i) names[i] = COMMANDS[i].name;
@@ -434,7 +442,9 @@ static Result run_command(BenchOptions *options, Error *error)
     if (COMMANDS[command].run == page_run) return page_run(options, NULL, error);
     const TableOutput *output = &options->output;
     if (COMMANDS[command].run == run_shaders && (output->csv || output->json || output->html))
-        return error_set(error, RESULT_USAGE, "shaders: has no rows for --csv, --json or --html");
+        return error_set(
+            error, RESULT_USAGE,
+            "shaders: --csv, --json and --html have no effect, since this command writes no rows");
     // Mesa does not compile shaders that it finds in its cache, so it would print no warnings for
     // them.
     if (COMMANDS[command].run == run_shaders) setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);

@@ -19,11 +19,14 @@ Result scene_words_read(Scene *scene, char **words, const char *const *names,
     while (*names) argv[argc++] = (char *)*names++;
     for (char *word = strtok_r(*words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
         if (argc == MOST_WORDS)
-            return error_set(error, RESULT_USAGE, "more than %d words of flags", MOST_WORDS);
+            return error_set(error, RESULT_USAGE, "too many options: expected at most %d words",
+                             MOST_WORDS);
         argv[argc++] = word;
     }
     TRY(scene_from_arguments(scene, argc, argv, error));
     return scene->request == REQUEST_RUN
                ? RESULT_OK
-               : error_set(error, RESULT_USAGE, "flags that ask for help: expected those of a run");
+               : error_set(
+                     error, RESULT_USAGE,
+                     "got an option that only prints, such as --help: expected options of a run");
 }

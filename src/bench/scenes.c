@@ -88,8 +88,9 @@ static Result measure_frames(Row *row, Simulation *simulation, const SceneKind *
     for (int i = 0; i < kind->sections; ++i)
         while (kind->rest[i] == SLEEPS && !simulation->sections[i].sleep.asleep) {
             if (simulation->frame > LATEST_SLEEP_S * FPS)
-                return error_set(error, RESULT_FAILED, "%s: still awake after %d s", kind->name,
-                                 LATEST_SLEEP_S);
+                return error_set(error, RESULT_FAILED,
+                                 "%s: hair is still awake after %d s: expected it to sleep",
+                                 kind->name, LATEST_SLEEP_S);
             frame_ms(simulation);
         }
     double *samples = calloc((size_t)options->steps, sizeof *samples);

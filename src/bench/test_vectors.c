@@ -21,7 +21,7 @@ static Result judge(TestVectorsReport *report, const char *category, long id, do
     size_t i = 0;
     while (i < report->category_count && strcmp(report->categories[i].name, category) != 0) ++i;
     if (i == VECTORS_MAX_CATEGORIES)
-        return error_set(error, RESULT_BAD_INPUT, "more than %zu categories", i);
+        return error_set(error, RESULT_BAD_INPUT, "too many categories: expected at most %zu", i);
     TestVectorsCategory *at = &report->categories[i];
     if (i == report->category_count) {
         ++report->category_count;
@@ -212,8 +212,9 @@ static Result read_spans(Chains *chains, Error *error)
         if (!(id == (double)row && segments >= 1 && segments <= 65535 && moves >= 0 &&
               moves <= 1e6))
             return error_set(error, RESULT_BAD_INPUT,
-                             "%s:%zu: expected case %zu with 1 to 65535 segments", csv->path,
-                             row + 2, row);
+                             "%s:%zu: wrong case or numbers: expected case %zu with 1 to 65535 "
+                             "segments and 0 to 1000000 moves",
+                             csv->path, row + 2, row);
         chains->spans[row] = (Span){(uint32_t)chains->point_count, (uint32_t)segments,
                                     (uint32_t)chains->waypoint_count, (uint32_t)moves};
         chains->point_count += (size_t)segments + 1;
@@ -237,8 +238,10 @@ static Result read_point(Chains *chains, size_t row, Error *error)
     bool waypoint = *kind == 'M';
     if (!known || index >= (waypoint ? span->waypoints : span->segments + 1) ||
         !strchr("PMR", *kind))
-        return error_set(error, RESULT_BAD_INPUT, "%s:%zu: no such case, kind or index", csv->path,
-                         row + 2);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s:%zu: unknown case, kind or index: expected a case of the other file, "
+                         "kind P, M or R, and an index in its range",
+                         csv->path, row + 2);
     size_t at = (waypoint ? span->first_waypoint : span->first_point) + (size_t)index;
     for (int k = 0; k < 3; ++k) {
         if (*kind == 'R')

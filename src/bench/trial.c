@@ -45,7 +45,7 @@ static Result apply(SectionParams *params, char *words, Error *error)
     for (char *flag = strtok_r(words, " ", &rest); flag; flag = strtok_r(NULL, " ", &rest)) {
         const char *value = strtok_r(NULL, " ", &rest);
         if (strncmp(flag, "--", 2) != 0 || !value)
-            return error_set(error, RESULT_USAGE, "settings: expected --flag value, got '%s'",
+            return error_set(error, RESULT_USAGE, "settings: got '%s', expected --OPTION VALUE",
                              flag);
         TRY(set_param(params, flag + 2, value, error));
     }
@@ -56,7 +56,8 @@ static Result apply_text(SectionParams *params, const char *text, Error *error)
 {
     char words[4096];
     if (snprintf(words, sizeof words, "%s", text) >= (int)sizeof words)
-        return error_set(error, RESULT_USAGE, "settings: longer than %zu bytes", sizeof words);
+        return error_set(error, RESULT_USAGE, "settings: too long: expected at most %zu bytes",
+                         sizeof words);
     return apply(params, words, error);
 }
 
@@ -363,7 +364,8 @@ static Result read_motions(MotionFolder *folder, const glob_t *found, Error *err
     folder->whole = in_mean == MEAN_COUNT;
     if (folder->count > 0) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s: no reference motions there (NAME.csv with NAME.json)", folder->path);
+                     "%s: no reference motions: expected NAME.csv with NAME.json in this folder",
+                     folder->path);
 }
 
 Result trial_read_folder(MotionFolder *folder, const char *path, Error *error)

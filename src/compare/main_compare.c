@@ -53,10 +53,10 @@ static const Option OPTIONS[] = {
      "prints NAME. Default limits: in A/NAME/ images must be equal; in A/CLASS/ 2 levels and 0.5 % "
      "failing pixels; in A 8 levels and 2 %"},
     {"any-platform", 0, OPTION_SWITCH, AT(any_platform), NULL, 0, 0,
-     "use goldens in A itself for images of GPUs, too"},
+     "compare images of GPUs with goldens in A itself, too"},
     {"level", 0, OPTION_WORD, AT(level), "used|platform|class|common", 0, 0,
-     "goldens that --update writes; used: the goldens that were compared, where a new golden is "
-     "common from a CPU, of the class from a GPU [default used]"},
+     "goldens that --update writes; used: the goldens that were compared; new goldens are common "
+     "if a CPU drew them, and of the class if a GPU did [default used]"},
     {"class-limits", 0, OPTION_STRING, AT(class_limits), "LEVELS,N|P%", 0, 0,
      "--pixel-tolerance and --max-failing-pixels for goldens in A/CLASS/ only"},
     {"common-limits", 0, OPTION_STRING, AT(common_limits), "LEVELS,N|P%", 0, 0,
@@ -151,8 +151,9 @@ static Result read_failing(CompareLimits *limits, const char *name, const char *
     limits->max_failing = number;
     limits->max_failing_percent = percent;
     if (number >= 0 && ((percent && number <= 100) || whole)) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "%s: got '%s', expected a whole number, or 0%% to 100%%",
-                     name, text);
+    return error_set(error, RESULT_USAGE,
+                     "%s: got '%s', expected a whole number of pixels, or 0%% to 100%%", name,
+                     text);
 }
 
 // "2,0.5%"
@@ -163,8 +164,9 @@ static Result read_level_limits(CompareLimits *limits, const char *name, const c
     double levels = strtod(text, &end);
     if (end == text || *end != ',' || !(levels >= 0 && levels <= 255))
         return error_set(error, RESULT_USAGE,
-                         "%s: got '%s', expected 0 to 255 levels and pixels, as 2,0.5%%", name,
-                         text);
+                         "%s: got '%s', expected LEVELS,N or LEVELS,P%%, for example 2,0.5%% "
+                         "(levels from 0 to 255)",
+                         name, text);
     limits->pixels_matter = true;
     limits->pixel_tolerance = levels;
     return read_failing(limits, name, end + 1, error);
@@ -206,19 +208,21 @@ static Result check_platform(const Command *command, Error *error)
                         : command->common_limits ? "--common-limits"
                                                  : NULL;
     if (!command->platform && alone)
-        return error_set(error, RESULT_USAGE, "%s: expected --platform NAME with it", alone);
+        return error_set(error, RESULT_USAGE, "%s: has no effect: expected --platform NAME with it",
+                         alone);
     if (command->level && !command->update)
-        return error_set(error, RESULT_USAGE, "--level: expected --update with it");
+        return error_set(error, RESULT_USAGE, "--level: has no effect: expected --update with it");
     if (!command->platform) return RESULT_OK;
     if (!level_is_platform(command->platform))
         return error_set(error, RESULT_USAGE,
-                         "--platform: got '%s', expected what tractrix-render --platform prints",
+                         "--platform: got '%s', expected the output of tractrix-render --platform",
                          command->platform);
     if (command->level && !level_counts(command->level, command->platform, command->any_platform))
-        return error_set(error, RESULT_USAGE,
-                         "--level common: goldens for all platforms are not used for the GPU %s: "
-                         "expected --level platform or class, or --any-platform with it",
-                         command->platform);
+        return error_set(
+            error, RESULT_USAGE,
+            "--level common: images of the GPU %s are not compared with goldens for all platforms: "
+            "expected --level platform or class, or --any-platform with it",
+            command->platform);
     return RESULT_OK;
 }
 
@@ -318,7 +322,8 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
                                                 : (int)cores,
                          .line = shell_join_line("tractrix-compare", argc, argv)};
     if (!command->line)
-        return error_set(error, RESULT_FAILED, "cannot note the command line: %s", strerror(errno));
+        return error_set(error, RESULT_FAILED, "cannot record the command line: %s",
+                         strerror(errno));
     const Command before = *command;
     Result result = options_parse(&PROGRAM, command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;

@@ -298,7 +298,7 @@ static Result check_kind(Kind kind, const PairOptions *options, Error *error)
                          : options->platform ? "--platform"
                                              : NULL;
     if (!option || kind == KIND_FOLDER) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "%s is for folders: got %s", option,
+    return error_set(error, RESULT_USAGE, "%s: got %s, expected two folders", option,
                      kind == KIND_PATTERN ? "patterns" : "two files");
 }
 
@@ -357,15 +357,16 @@ static Result give_mask(PairList *list, const Side *masks, const char *name, int
                                         : !have_one_stem(name, file_name(pair->a)))
             continue;
         if (pair->mask)
-            return error_set(error, RESULT_BAD_INPUT, "%s: two masks for %s: %s and %s",
-                             masks->text, pair->name, file_name(pair->mask), name);
+            return error_set(error, RESULT_BAD_INPUT,
+                             "%s: two masks for %s: %s and %s: expected one", masks->text,
+                             pair->name, file_name(pair->mask), name);
         found = true;
         pair->mask = place_of(masks, name, frame);
         if (!pair->mask) return fail_memory(error);
     }
     if (found || !all) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s: no image belongs to the mask %s: expected the %s of an image",
+                     "%s: the mask %s belongs to no image: expected a mask with the %s of an image",
                      masks->text, name, masks->kind == KIND_PATTERN ? "number" : "name");
 }
 
@@ -387,7 +388,9 @@ static Result give_masks(PairList *list, const Side *masks, bool all, Error *err
     }
     closedir(directory);
     if (result == RESULT_OK && count == 0)
-        return error_set(error, RESULT_BAD_INPUT, "%s: no mask there", masks->text);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: no masks: expected images in this folder or of this pattern",
+                         masks->text);
     return result;
 }
 
@@ -449,7 +452,8 @@ static Result pair_many(PairList *list, Side sides[2], const PairOptions *option
     if (options->commands)
         TRY(read_lines(list, sides, options->commands, "COMMAND", give_command, error));
     if (list->count == 0)
-        return error_set(error, RESULT_BAD_INPUT, "%s and %s: no image in either", sides[0].text,
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s and %s: no images: expected .png, .pfm or .exr files", sides[0].text,
                          sides[1].text);
     qsort(list->pairs, list->count, sizeof *list->pairs, order);
     if (options->only) TRY(keep_only(list, options->only, error));
@@ -469,8 +473,10 @@ Result pairs_find(PairList *list, const char *a, const char *b, const PairOption
     if (!options->create) sides[0].missing = false;
     Result result;
     if (sides[0].kind != sides[1].kind)
-        result = error_set(error, RESULT_USAGE, "%s is %s, but %s is %s: expected two of a kind", a,
-                           KIND_NAMES[sides[0].kind], b, KIND_NAMES[sides[1].kind]);
+        result =
+            error_set(error, RESULT_USAGE,
+                      "%s is %s, but %s is %s: expected two files, two folders or two patterns", a,
+                      KIND_NAMES[sides[0].kind], b, KIND_NAMES[sides[1].kind]);
     else
         result = check_kind(sides[0].kind, options, error);
     if (sides[0].kind == KIND_FILE)

@@ -192,7 +192,8 @@ static void find(Verdict *verdict, const Pair *pair, const VerdictOptions *optio
         snprintf(verdict->text, sizeof verdict->text, "no %s%s", pair->has_a ? pair->b : pair->a,
                  pair->has_a || !pair->not_for_gpus
                      ? ""
-                     : "; the golden for all platforms is used for GPUs only with --any-platform");
+                     : "; images of GPUs are compared with the golden for all platforms only if "
+                       "--any-platform is given");
     if (!pair->has_b || (!pair->has_a && !options->update)) return;
     Result result = float_image_read_image(&b, pair->b, &error);
     if (result != RESULT_OK) {
@@ -239,7 +240,8 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
     if (pair->level && pair->has_a)
         fprintf(stream, "; golden: %s (%s)", quote(pair->a).text, LEVEL_NAMES[pair->level]);
     if (verdict->dropped)
-        fprintf(stream, "; left to %s, which is equal", quote(pair->fallback).text);
+        fprintf(stream, "; needs no golden of its own, because %s is equal",
+                quote(pair->fallback).text);
     else if (verdict->updated)
         fputs("; reference updated", stream);
     fputc('\n', stream);

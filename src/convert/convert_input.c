@@ -204,9 +204,9 @@ static Result check_framed(const ConvertInput *input, Error *error)
     int first = input->frames.first, last = find_last(input);
     if (input->first >= first && input->last <= last && input->first <= input->last)
         return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%s: no frame %d: it has %d to %d", input->paths[0],
-                     input->first < first || input->first > last ? input->first : input->last,
-                     first, last);
+    return error_set(
+        error, RESULT_BAD_INPUT, "%s: no frame %d: the file has frames %d to %d", input->paths[0],
+        input->first < first || input->first > last ? input->first : input->last, first, last);
 }
 
 // Fails if frames are missing: the cache is unfinished, or numbered files continue after a gap.
@@ -221,8 +221,8 @@ static Result check_whole(const ConvertInput *input, Error *error)
                          input->paths[0], cache->frame_count);
     if (last > input->last && input->last >= input->first)
         return error_set(error, RESULT_FAILED,
-                         "%s: no file for frame %d, but one for frame %d: expected all, --partial "
-                         "or --last N",
+                         "%s: no file for frame %d, but one for frame %d: expected files for all "
+                         "frames, --partial or --last N",
                          input->paths[0], input->last + 1, last);
     return RESULT_OK;
 }
@@ -235,8 +235,8 @@ static Result choose_frames(ConvertInput *input, Error *error)
         input->first = input->last = 0;
         if (cut || input->fps > 0)
             return error_set(error, RESULT_USAGE,
-                             "--first, --last, --every and --fps are for a cache or numbered files "
-                             "(x_%%04d.tfx)");
+                             "--first, --last, --every and --fps have no effect: expected a cache "
+                             "or numbered files (x_%%04d.tfx)");
         return RESULT_OK;
     }
     double own = input->cached ? input->cache.fps : input->frames.fps;
@@ -301,8 +301,10 @@ Result convert_input_open(ConvertInput *input, Error *error)
         input->cached = input->cached || cached;
         input->numbered = input->numbered || numbered;
         if ((cached || numbered) && input->path_count > 1)
-            return error_set(error, RESULT_USAGE, "%s: frames can't be joined with other files",
-                             input->paths[i]);
+            return error_set(
+                error, RESULT_USAGE,
+                "%s: has several frames and cannot be joined with other files: expected one input",
+                input->paths[i]);
     }
     input->reports = calloc((size_t)input->path_count + 1, sizeof *input->reports);
     if (!input->reports) return error_set(error, RESULT_FAILED, "no memory for reports");

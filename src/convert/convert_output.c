@@ -126,8 +126,8 @@ static Result check_same(const ConvertOutput *output, int frame, const Strands *
 {
     if (same_strands(&output->still, strands)) return RESULT_OK;
     return error_set(error, RESULT_FAILED,
-                     "%s: frame %d has other strands than frame %d; in one file they must be "
-                     "the same",
+                     "%s: the strands of frame %d differ from those of frame %d: expected the same "
+                     "strands in all frames of a file",
                      output->path, frame, output->first);
 }
 

@@ -52,11 +52,11 @@ static const Option OPTIONS[] = {
      "axis of the hair files that points up; auto: as the file says, otherwise z in Cem Yuksel's "
      ".hair files and y in all others [default auto]"},
     {"points-per-strand", 0, OPTION_WHOLE, AT(points), "N", 2, 65535,
-     "points per strand in .ply and .npy files that only list points, and vertices per cubic "
-     "curve; without it found from the jumps between strands, and 1 to 4 per curve segment"},
+     "points per strand in .ply and .npy files that only list points, and vertices per cubic curve "
+     "[default: found from the gaps between strands; 1 to 4 per curve segment]"},
     {"array", 0, OPTION_STRING, AT(array), "NAME", 0, 0,
-     "name of the array of positions in a .npz file; without it positions, points, or the first "
-     "array of a suitable shape"},
+     "name of the array of positions in a .npz file [default: positions, points, or the first "
+     "array of a suitable shape]"},
     {"strict", 0, OPTION_SWITCH, AT(strict), NULL, 0, 0,
      "reject files with defects instead of repairing them"},
     {"to-unit", 0, OPTION_STRING, AT(to_unit), UNITS, 0, 0, "unit of the written file [default m]"},
@@ -76,8 +76,8 @@ static const Option OPTIONS[] = {
      "frames per second of .usda, .abc and .npz [default: the cache's; 60 for numbered files]"},
 
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0,
-     "head or body for --fit, --attach, --push-out and for the depth inside in --stats: Wavefront "
-     "OBJ or PLY; of a file with samples the first sample"},
+     "head or body for --fit, --attach and --push-out, and for --stats, which then prints how deep "
+     "hair is inside it: Wavefront OBJ or PLY; if a file has samples, the first sample"},
     {"mesh-unit", 0, OPTION_STRING, AT(mesh_unit), UNITS, 0, 0,
      "length of one unit of the mesh [default: as the file says, otherwise as for the first hair "
      "file]"},
@@ -121,18 +121,21 @@ static const Option OPTIONS[] = {
 
 // The notes of the help after the paragraph about formats.
 #define OTHER_NOTES                                                                                \
-    "Steps run in the order of the command line. Lengths are metres with y up, whatever the file " \
-    "uses.",                                                                                       \
-        "Defects are repaired when a file is read, as in tractrix-render, with a line for each "   \
-        "kind: strands without length or with coordinates that are not numbers are dropped, "      \
-        "coincident vertices merged, bad attributes replaced. Data that the written format "       \
-        "cannot store is dropped, with one warning.",                                              \
+    "Steps run in the order of the command line. Their lengths are in metres and y points up, "    \
+    "whatever unit and axis the file uses.",                                                       \
+        "Defects are repaired when a file is read, as in tractrix-render, and a line is printed "  \
+        "for each kind of defect: strands without length or with coordinates that are not "        \
+        "numbers are dropped, coincident vertices are merged, bad attributes are replaced. Data "  \
+        "that the written format cannot store is left out, with one warning.",                     \
         NULL
 
 static const char *const STATUS[][2] = {
-    {"0", "done"},          {"1", "a file can't be written"},
-    {"2", "wrong usage"},   {"3", "a file can't be read or is rejected"},
-    {"130", "interrupted"}, {NULL, NULL}};
+    {"0", "done"},
+    {"1", "failed: a file can't be written, frames are missing, no strand is left, ..."},
+    {"2", "wrong usage"},
+    {"3", "a file can't be read or is rejected"},
+    {"130", "interrupted"},
+    {NULL, NULL}};
 
 static const char *const EXAMPLES[] = {
     "tractrix-convert hair.tfx",
@@ -235,9 +238,9 @@ static void describe_formats(char *text, size_t size)
     format_list_suffixes(suffixes, sizeof suffixes);
     snprintf(text, size,
              "FILE is a hair file (%s), - for standard input, a name with %%d or %%04d that stands "
-             "for numbered ones, or "
-             "a cache of tractrix-render. Several hair files become one. Without -o, --stats and "
-             "--json the program only reports what they are. The suffix of what is written is %s.",
+             "for numbered files, or a cache of tractrix-render. Several hair files are joined to "
+             "one. Without -o, --stats and --json the program only describes the files. Files are "
+             "written with the suffix %s.",
              names, suffixes);
 }
 

@@ -138,8 +138,8 @@ static Result grow_all(Farm *farm, Strands *strands, FurReport *report, Error *e
         double length = find_length(farm, root, &random);
         if (isnan(length))
             return error_set(error, RESULT_USAGE,
-                             "--length-map is not a number at %.3g, %.3g, %.3g", root->place[0],
-                             root->place[1], root->place[2]);
+                             "--length-map: not a number at %.3g, %.3g, %.3g: expected 0 to 1",
+                             root->place[0], root->place[1], root->place[2]);
         if (length < 1e-3 * recipe->length) continue;
         surface_normal(&farm->surface, root, normal);
         fur_weave_create(&weave, recipe, &farm->guides, s < farm->guides.count ? s : FUR_NO_GUIDE,
@@ -152,7 +152,9 @@ static Result grow_all(Farm *farm, Strands *strands, FurReport *report, Error *e
     strands->strand_count = grown;
     strands->vertex_count = grown * (uint32_t)recipe->vertices;
     if (grown > 0) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "--length-map leaves no hair on %s", farm->name);
+    return error_set(error, RESULT_USAGE,
+                     "--length-map: leaves no hair on %s: expected more than 0.001 in some places",
+                     farm->name);
 }
 
 Result fur_grow(Strands *strands, const FurRecipe *recipe, const Mesh *mesh, const char *name,

@@ -12,7 +12,9 @@ static Result read_image(FurMap *map, const char *name, const char *path, const 
         for (int k = 0; k < 3; k++)
             if (!mesh->uv || mesh->triangle_uv[t][k] == MESH_NO_UV)
                 return error_set(error, RESULT_USAGE,
-                                 "%s %s: an image needs texture coordinates, %s", name, path,
+                                 "%s %s: an image is placed by texture coordinates, %s: expected "
+                                 "them for all triangles",
+                                 name, path,
                                  mesh->uv ? "which some of the mesh's triangles lack"
                                           : "which the mesh lacks");
     Bytes bytes;
@@ -129,9 +131,9 @@ Result fur_map_create_comb(FurComb *comb, const char *name, const char *text, co
     Result result = copy ? RESULT_OK : error_set(error, RESULT_FAILED, "out of memory");
     int count = copy ? cut_text(copy, part) : 0;
     if (copy && count != 3)
-        result = error_set(error, RESULT_USAGE,
-                           "%s: expected X,Y,Z, each a number or a formula, or a .png, got '%s'",
-                           name, text);
+        result = error_set(
+            error, RESULT_USAGE,
+            "%s: got '%s', expected X,Y,Z, each a number or a formula, or a .png file", name, text);
     for (int i = 0; i < 3 && result == RESULT_OK; i++)
         result = fur_map_create(&comb->axis[i], name, part[i], mesh, error);
     free(copy);

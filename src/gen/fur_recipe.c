@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gen/fur_recipe.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -27,16 +28,20 @@ Result fur_recipe_check(const FurRecipe *recipe, Error *error)
     double turns = recipe->curl_frequency * recipe->length;
     if (recipe->curl_radius > 0.0 && recipe->vertices - 1 < 4.0 * turns)
         return error_set(error, RESULT_USAGE,
-                         "%g turns of curls over %g m need %.0f vertices, 4 a turn; there are %d",
-                         turns, recipe->length, 4.0 * turns + 1.5, recipe->vertices);
+                         "--vertices: got %d, expected at least %.0f: 4 for each of the %g turns "
+                         "of curls over %g m",
+                         recipe->vertices, ceil(4.0 * turns) + 1.0, turns, recipe->length);
     if (recipe->clumps > 0 && recipe->guides > 0 && recipe->clumps > recipe->guides)
-        return error_set(error, RESULT_USAGE, "%d clumps need as many guides, there are %d",
+        return error_set(error, RESULT_USAGE,
+                         "--clumps: got %d, expected at most %d, the number of --guides",
                          recipe->clumps, recipe->guides);
     if ((recipe->clump > 0.0 || recipe->clump_root > 0.0) && !recipe->guides && !recipe->clumps)
-        return error_set(error, RESULT_USAGE,
-                         "hair gathers around guides: --clump needs --guides or --clumps");
+        return error_set(
+            error, RESULT_USAGE,
+            "--clump and --clump-root: have no effect: expected --guides or --clumps with them");
     if (recipe->count > 0 && (uint64_t)recipe->count * (uint64_t)recipe->vertices > 1u << 30)
-        return error_set(error, RESULT_USAGE, "%d strands of %d vertices are too many",
+        return error_set(error, RESULT_USAGE,
+                         "%d strands of %d vertices: expected at most 2^30 vertices in all",
                          recipe->count, recipe->vertices);
     return RESULT_OK;
 }
@@ -68,28 +73,29 @@ static const Option OPTIONS[] = {
     {"per-cm2", 0, OPTION_REAL, AT(per_cm2), "N", 1e-6, 1e6,
      "strands per square centimetre where the density is 1, instead of --count"},
     {"density", 0, OPTION_STRING, AT(density), "MAP", 0, 0,
-     "how densely hair grows, relative to other places; 0: not at all"},
+     "relative density of hair at each place; 0: no hair"},
     {"root-lift", 0, OPTION_REAL, AT(root_lift), "M", 1e-6, 1,
-     "height at which roots lie above the surface; no other vertex comes nearer to it "
-     "[default 0.0001]"},
+     "height of roots above the surface; no other vertex comes nearer to the surface [default "
+     "0.0001]"},
     {"vertices", 0, OPTION_WHOLE, AT(vertices), "N", 2, 1024, "vertices per strand [default 16]"},
     // Form.
     {"length", 0, OPTION_REAL, AT(length), "M", 1e-4, 100,
      "length of the longest strand [default 0.03]"},
     {"length-variation", 0, OPTION_REAL, AT(length_variation), "SHARE", 0, 0.99,
-     "each strand is shortened by a random share of its length, at most this [default 0.3]"},
+     "each strand is shortened by a random share of its length; this is the largest share [default "
+     "0.3]"},
     {"length-map", 0, OPTION_STRING, AT(length_map), "MAP", 0, 0,
      "factor of --length at each place, 0 to 1"},
     {"comb", 0, OPTION_STRING, AT(comb), "X,Y,Z|PNG", 0, 0,
-     "direction in which hair is combed: three numbers or formulas, of which the part along the "
-     "surface counts; or an image, whose red is the direction along u and green along v"},
+     "direction in which hair is combed: three numbers or formulas, a vector of which only the "
+     "part along the surface counts; or an image: red is the direction along u, green along v"},
     {"lift", 0, OPTION_REAL, AT(lift_deg), "DEG", 0, 90,
      "angle between hair and surface at the root [default 45]"},
     {"lie", 0, OPTION_REAL, AT(lie), "M", 0, 100,
-     "distance along the strand over which hair turns into the direction of --comb at each place "
-     "and down onto the surface; 0: the comb acts at the root only [default 0]"},
+     "distance along the strand over which hair turns into the direction of --comb and down onto "
+     "the surface; 0: the comb acts only at the root [default 0]"},
     {"comb-reach", 0, OPTION_REAL, AT(comb_reach), "M", 0, 100,
-     "part of the strand, from the root, on which --lie acts; 0: all of it [default 0]"},
+     "length of the strand, from the root, on which --lie acts; 0: the whole strand [default 0]"},
     {"gravity-bend", 0, OPTION_REAL, AT(gravity_bend), "RAD/M", 0, 10000,
      "how much hair bends down by its weight where it is horizontal [default 10]"},
     {"volume", 0, OPTION_REAL, AT(volume), "M", 0, 1,
@@ -98,10 +104,10 @@ static const Option OPTIONS[] = {
      "random bends along the strands, nearly the same for neighbours: 0.3 slight, 1 strong "
      "[default 0]"},
     {"noise-size", 0, OPTION_REAL, AT(noise_size), "M", 1e-4, 10,
-     "distance over which the bends of --noise change; a smaller one also bends hair more sharply "
-     "[default 0.02]"},
+     "distance over which the bends of --noise change; a smaller distance also bends hair more "
+     "sharply [default 0.02]"},
     {"scatter", 0, OPTION_REAL, AT(scatter), "X", 0, 10,
-     "how much the strands' directions at the root differ by chance [default 0]"},
+     "how much the directions of the strands at the root differ at random [default 0]"},
     // Guides.
     {"guides", 0, OPTION_WHOLE, AT(guides), "N", 1, 2e6,
      "grow this many strands over the surface and interpolate the others between them: faster and "
@@ -112,7 +118,8 @@ static const Option OPTIONS[] = {
      "how far tips are pulled to the guide of their clump, as a share of the distance "
      "[default 0]"},
     {"clump-root", 0, OPTION_REAL, AT(clump_root), "SHARE", 0, 1,
-     "how far roots are pulled to the guide of their clump, likewise [default 0]"},
+     "how far roots are pulled to the guide of their clump, as a share of the distance [default "
+     "0]"},
     {"clump-profile", 0, OPTION_REAL, AT(clump_profile), "X", 0.01, 0.99,
      "where the strands of a clump come together: below 0.5 near the tip, above near the root "
      "[default 0.5]"},
@@ -124,12 +131,12 @@ static const Option OPTIONS[] = {
      "0: the strands of a clump curl side by side; 1: each begins its curl at a random angle "
      "[default 0.2]"},
     {"frizz", 0, OPTION_REAL, AT(frizz), "M", 0, 1,
-     "size of small waves at the tip, other ones for each strand [default 0]"},
+     "size of small waves at the tip, different for each strand [default 0]"},
     {"frizz-frequency", 0, OPTION_REAL, AT(frizz_frequency), "N", 0.01, 100000,
      "waves of --frizz per metre [default 60]"},
     {"flyaways", 0, OPTION_REAL, AT(flyaways), "SHARE", 0, 1,
-     "share of strands that stand off: they hardly clump and have three times the frizz "
-     "[default 0]"},
+     "share of strands that stick out: they hardly clump and have three times the frizz [default "
+     "0]"},
     // Other.
     {"followers", 0, OPTION_WHOLE, AT(followers), "N", 1, 1000,
      "followers that the renderer adds to each strand; only some formats store this"},
@@ -140,25 +147,24 @@ static const Option OPTIONS[] = {
 };
 
 static const char *const NOTES[] = {
-    "Lengths are in metres. M stands for a length, MAP for a number, a PNG file or a formula, "
-    "whose value may be another one at each place of the mesh. A PNG file is placed by the mesh's "
-    "texture coordinates; black is 0, white is 1.",
+    "Lengths are in metres. M stands for a length. MAP stands for a number, a PNG file or a "
+    "formula; the value of a file or formula can differ from place to place. A PNG file is placed "
+    "by the mesh's texture coordinates; black is 0, white is 1.",
     "A formula may use the position x, y, z, the normal nx, ny, nz, the texture coordinates u, v, "
     "the operators + - * / ^, comparisons, a ? b : c, and the functions of muParser (sqrt, abs, "
     "min, max, sin ...). smoothstep(a, b, x) rises from 0 at x = a to 1 at x = b. noise(x, y, z) "
     "is a random number between -1 and 1 that changes smoothly over distances of 1, so "
     "noise(x/0.03, y/0.03, z/0.03) changes over 3 cm.",
     "Hair that would grow through the mesh is bent out of it. Where two parts of the mesh overlap, "
-    "roots of one may lie inside the other: exclude them by --density.",
-    "The same seed gives the same bytes on every machine, if formulas use no functions but "
+    "roots of one may lie inside the other: give these places a --density of 0.",
+    "The same seed gives the same bytes on every machine, if formulas use only the functions "
     "smoothstep, noise, sqrt, abs, min and max.",
     NULL};
 
-static const char *const STATUS[][2] = {{"0", "done"},
-                                        {"1", "failed: disk full, no memory, ..."},
-                                        {"2", "wrong usage"},
-                                        {"3", "the mesh or a map can't be read"},
-                                        {NULL, NULL}};
+static const char *const STATUS[][2] = {
+    {"0", "done"},          {"1", "failed: disk full, no memory, ..."},
+    {"2", "wrong usage"},   {"3", "the mesh or a map can't be read"},
+    {"130", "interrupted"}, {NULL, NULL}};
 
 static const char *const EXAMPLES[] = {
     "tractrix-gen fur ball.obj --comb 0,-1,0 --count 20000 -o fur.tfx",
@@ -187,7 +193,9 @@ static Result check_holds(const Command *command, const char *option, uint32_t f
     char words[200];
     if (!(features & ~FORMAT_TABLE[command->output.format]->features)) return RESULT_OK;
     format_list_holding(features, words, sizeof words);
-    return error_set(error, RESULT_USAGE, "--%s: expected --format %s", option, words);
+    return error_set(error, RESULT_USAGE,
+                     "--%s: the format of the output cannot store it: expected --format %s", option,
+                     words);
 }
 
 static Result check(const Command *command, Error *error)

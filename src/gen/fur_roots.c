@@ -48,7 +48,8 @@ static SurfacePoint throw_dice(Dice *dice)
 
 static Result fail_density(double value, const SurfacePoint *at, const char *name, Error *error)
 {
-    return error_set(error, RESULT_USAGE, "--density is %g at %.3g, %.3g, %.3g of %s", value,
+    return error_set(error, RESULT_USAGE,
+                     "--density: %g at %.3g, %.3g, %.3g on %s: expected a finite number", value,
                      at->place[0], at->place[1], at->place[2], name);
 }
 
@@ -66,7 +67,9 @@ static Result find_densest(Dice *dice, const FurMap *density, const char *name, 
         *mean += fmax(value, 0.0) / PROBES;
     }
     if (*most > 0.0) return RESULT_OK;
-    return error_set(error, RESULT_USAGE, "--density is nowhere above 0 on %s", name);
+    return error_set(error, RESULT_USAGE,
+                     "--density: nowhere above 0 on %s: expected a number above 0 in some places",
+                     name);
 }
 
 Result fur_roots_measure(const Surface *surface, const FurMap *density, uint32_t seed,

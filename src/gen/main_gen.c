@@ -60,8 +60,11 @@ static const Option OPTIONS[] = {
     GEN_OPTION_QUIET(AT(output.quiet)),
 };
 
-static const char *const STATUS[][2] = {
-    {"0", "done"}, {"1", "failed: disk full, no memory, ..."}, {"2", "wrong usage"}, {NULL, NULL}};
+static const char *const STATUS[][2] = {{"0", "done"},
+                                        {"1", "failed: disk full, no memory, ..."},
+                                        {"2", "wrong usage"},
+                                        {"130", "interrupted"},
+                                        {NULL, NULL}};
 
 static const char *const EXAMPLES[] = {
     "tractrix-gen --kind curls --shape head --count 2000 -o curls.tfx --mesh head.obj",
@@ -135,7 +138,7 @@ static Result check_effect(const Command *command, Error *error)
         return error_set(error, RESULT_USAGE, "--%s: has no effect: --kind is %s", curl,
                          KIND_NAMES[command->kind]);
     if (command->set >= 0 && shaping)
-        return error_set(error, RESULT_USAGE, "--set %s and --%s exclude each other",
+        return error_set(error, RESULT_USAGE, "--set %s and --%s: expected only one of them",
                          SET_NAMES[command->set], shaping);
     if (!command->output.path && !command->mesh && !command->motion && !command->environment)
         return error_set(error, RESULT_USAGE, "no output: expected -o FILE");

@@ -317,12 +317,14 @@ static Result check_recipe(const StrandsRecipe *recipe, Error *error)
             RESULT_OK)
             return RESULT_USAGE;
     if ((uint64_t)recipe->count * recipe->vertices >= UINT32_MAX)
-        return error_set(error, RESULT_USAGE, "%u strands of %u vertices are too many",
+        return error_set(error, RESULT_USAGE,
+                         "%u strands of %u vertices: expected fewer than 2^32 vertices in all",
                          recipe->count, recipe->vertices);
     double wound = 2.0 * PI * (double)recipe->curl_radius * (double)recipe->curl_turns;
     if (recipe->style == STRANDS_STYLE_CURLS && wound > 0.9 * (double)recipe->length)
         return error_set(error, RESULT_USAGE,
-                         "curls of radius %g m with %g turns do not fit into a length of %g m",
+                         "curls of radius %g m with %g turns do not fit into a length of %g m: "
+                         "expected a smaller radius, fewer turns or longer hair",
                          (double)recipe->curl_radius, (double)recipe->curl_turns,
                          (double)recipe->length);
     return RESULT_OK;

@@ -74,8 +74,8 @@ static Result read_limits(Gpu *gpu, Error *error)
     gpu->kind = gpu->software ? GPU_CPU_DRIVER : GPU_HARDWARE;
     int version = 10 * query_int(GL_MAJOR_VERSION) + query_int(GL_MINOR_VERSION);
     if (version < 43)
-        return error_set(error, RESULT_NO_GL, "%s has OpenGL %d.%d, 4.3 is needed", gpu->renderer,
-                         version / 10, version % 10);
+        return error_set(error, RESULT_NO_GL, "%s has OpenGL %d.%d: expected 4.3 or newer",
+                         gpu->renderer, version / 10, version % 10);
     int side_px = query_int(GL_MAX_TEXTURE_SIZE), layer_px = query_int(GL_MAX_FRAMEBUFFER_WIDTH);
     gpu->limits = (GpuLimits){
         .storage_block = query_int64(GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
@@ -169,7 +169,7 @@ static Result try_egl(Gpu *gpu, const Search *search, const GpuDevice *device, i
 static Result try_osmesa(Gpu *gpu, const Search *search, Error *error)
 {
     if (search->options.require_hardware)
-        return error_set(error, RESULT_NO_GL, "OSMesa draws on the CPU");
+        return error_set(error, RESULT_NO_GL, "OSMesa draws on the CPU, not on a GPU");
     TRY(gpu_osmesa_create(&gpu->osmesa, error));
     snprintf(gpu->path, sizeof gpu->path, "OSMesa");
     Result result = accept(gpu, search, -1, error);
@@ -263,12 +263,11 @@ static Result refuse(const Search *search, Error *error)
                          search->options.device,
                          *search->attempts.text ? search->attempts.text : "there are fewer");
     gpu_device_explain("/dev", &sign);
-    return error_set(
-        error, RESULT_NO_GL,
-        "no usable OpenGL 4.3 (%s%s%s); on Debian the packages libegl1, libopengl0 and "
-        "libgl1-mesa-dri give a CPU driver, in a container on NVIDIA the 'graphics' "
-        "driver capability is needed",
-        search->attempts.text, *sign.text ? "; " : "", sign.text);
+    return error_set(error, RESULT_NO_GL,
+                     "no usable OpenGL 4.3 (%s%s%s): expected a GPU with its driver, or a CPU "
+                     "driver (on Debian the packages libegl1, libopengl0 and libgl1-mesa-dri); a "
+                     "container with an NVIDIA GPU needs the driver capability 'graphics'",
+                     search->attempts.text, *sign.text ? "; " : "", sign.text);
 }
 
 static void use(const Gpu *gpu)
@@ -285,7 +284,7 @@ static Result make_room(Gpu *gpu, Error *error)
     gpu->tables = calloc(1, sizeof *gpu->tables);
     if (!gpu->uniforms || !gpu->programs || !gpu->tables) {
         gpu_destroy(gpu);
-        return error_set(error, RESULT_FAILED, "no memory for what scenes share");
+        return error_set(error, RESULT_FAILED, "no memory for the data that scenes share");
     }
     gpu->programs->most = MOST_PROGRAMS;
     gpu->tables->most = MOST_TABLES;

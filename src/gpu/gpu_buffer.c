@@ -25,8 +25,10 @@ static Result check_size(int64_t most, const GpuLimits *limits, const char *what
     if (format && limits->texture_texels * texel_size(format) < most)
         most = limits->texture_texels * texel_size(format);
     if (size <= most) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: %lld bytes in one buffer, this driver allows %lld",
-                     what, (long long)size, (long long)most);
+    return error_set(
+        error, RESULT_FAILED,
+        "%s: %lld bytes in one buffer: expected at most %lld, the limit of this driver", what,
+        (long long)size, (long long)most);
 }
 
 static Result fill(GpuBuffer *buffer, const char *what, const void *data, GLenum texel_format,

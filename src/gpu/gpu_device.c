@@ -109,7 +109,8 @@ void gpu_device_explain(const char *dev, Error *why)
     why->text[0] = 0;
     if (find_node(dev, "dri/renderD*", node)) {
         if (access(node, R_OK | W_OK) != 0)
-            error_set(why, RESULT_NO_GL, "%s: %s (on Debian the group 'render' may open it)", node,
+            error_set(why, RESULT_NO_GL,
+                      "%s: %s (on Debian, members of the group 'render' may open it)", node,
                       strerror(errno));
         else
             error_set(why, RESULT_NO_GL,

@@ -87,13 +87,13 @@ static Result open_display(EglContext *egl, void *device, Error *error)
 {
     const char *client = device ? "EGL_EXT_platform_device" : "EGL_MESA_platform_surfaceless";
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, client))
-        return error_set(error, RESULT_NO_GL, "%s is not offered", client);
+        return error_set(error, RESULT_NO_GL, "%s is not supported", client);
     EGLenum platform = device ? EGL_PLATFORM_DEVICE_EXT : EGL_PLATFORM_SURFACELESS_MESA;
     egl->display = eglGetPlatformDisplayEXT(platform, device, NULL);
     if (!egl->display) return fail("eglGetPlatformDisplay", error);
     if (!eglInitialize(egl->display, NULL, NULL)) return fail("eglInitialize", error);
     if (!epoxy_has_egl_extension(egl->display, "EGL_KHR_surfaceless_context"))
-        return error_set(error, RESULT_NO_GL, "EGL_KHR_surfaceless_context is not offered");
+        return error_set(error, RESULT_NO_GL, "EGL_KHR_surfaceless_context is not supported");
     return RESULT_OK;
 }
 

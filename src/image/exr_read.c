@@ -193,8 +193,9 @@ static Result make_image(Picture *picture, Error *error)
     long long width = side(shown->min.x, shown->max.x), height = side(shown->min.y, shown->max.y);
     if (width < 1 || height < 1 || width > READ_MAX_SIDE || height > READ_MAX_SIDE ||
         width * height > READ_MAX_PIXELS)
-        return error_set(error, RESULT_BAD_INPUT, "%s: %lld x %lld pixels, at most %d are read",
-                         picture->path, width, height, READ_MAX_PIXELS);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: %lld x %lld pixels: expected at most %d pixels", picture->path, width,
+                         height, READ_MAX_PIXELS);
     int channels = picture->names[3] ? 4 : 3;
     uint64_t size = (uint64_t)(width * height) * (uint64_t)channels * sizeof(float),
              most = READ_MAX_FACTOR * (uint64_t)picture->stream.read->size + READ_SURE_BYTES;
@@ -226,7 +227,8 @@ static Result store(Picture *picture, long long x, long long y, const exr_chunk_
                 long long to_x = x + column - picture->shown.min.x;
                 if (to_x < 0 || to_x >= image->width) continue;
                 if (!isfinite(from[column]))
-                    return error_set(error, RESULT_BAD_INPUT, "%s: has numbers that are not finite",
+                    return error_set(error, RESULT_BAD_INPUT,
+                                     "%s: has infinite numbers or NaN: expected finite numbers",
                                      picture->path);
                 to[(size_t)to_x * step + (size_t)k] = from[column];
             }
@@ -318,7 +320,8 @@ static Result read_picture(Picture *picture, Error *error)
                          picture->path);
     if (compression > EXR_COMPRESSION_B44A)
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: compressed by DWA, which is not read: expected ZIP or another",
+                         "%s: compressed by DWA, which is not supported: expected another "
+                         "compression, for example ZIP",
                          picture->path);
     TRY(choose_channels(picture, error));
     TRY(make_image(picture, error));

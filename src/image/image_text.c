@@ -56,7 +56,9 @@ static ImageText *find_or_add(ImageTexts *texts, const char *key)
 Result image_texts_set(ImageTexts *texts, const char *key, const char *value, Error *error)
 {
     if (!image_texts_is_key(key))
-        return error_set(error, RESULT_FAILED, "an image's text of this name cannot be written");
+        return error_set(
+            error, RESULT_FAILED,
+            "the name of an image's text: expected 1 to 79 characters that PNG allows");
     char *copy = strdup(value);
     ImageText *text = copy ? find_or_add(texts, key) : NULL;
     if (!text) {

@@ -48,10 +48,13 @@ Result jpeg_encode(const Image *image, int quality, Bytes *jpeg, Error *error)
     *jpeg = (Bytes){0};
     if (image->kind != IMAGE_8 || image->channels != 3)
         return error_set(error, RESULT_FAILED,
-                         "expected an image of 8 bits without transparency: JPEG stores no other");
+                         "an image of 16 bits, of floats or with transparency: expected 8 bits "
+                         "without transparency, since JPEG stores nothing else");
     if (image->width > MOST_PX || image->height > MOST_PX)
-        return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for JPEG",
-                         image->width, image->height);
+        return error_set(
+            error, RESULT_FAILED,
+            "an image of %d x %d pixels: expected at most 65535 x 65535, the limit of JPEG",
+            image->width, image->height);
     int done = stbi_write_jpg_to_func(take_bytes, &sink, image->width, image->height, 3,
                                       image->pixels, quality);
     if (done && !sink.failed) {

@@ -91,8 +91,8 @@ Result pfm_decode(Image *image, const Bytes *file, const char *path, Error *erro
         return error_set(error, RESULT_BAD_INPUT, "%s: not a readable PFM file", path);
     long long count = (long long)header.width * header.height;
     if (count > 1 << 28)
-        return error_set(error, RESULT_BAD_INPUT, "%s: %d x %d pixels, at most %d are read", path,
-                         header.width, header.height, 1 << 28);
+        return error_set(error, RESULT_BAD_INPUT, "%s: %d x %d pixels: expected at most %d pixels",
+                         path, header.width, header.height, 1 << 28);
     size_t size = (size_t)count * (size_t)header.channels * 4;
     if (file->size - header.size != size)
         return error_set(error, RESULT_BAD_INPUT, "%s: %zu bytes of pixels, expected %zu", path,
@@ -100,5 +100,6 @@ Result pfm_decode(Image *image, const Bytes *file, const char *path, Error *erro
     Result result = image_create_kind(image, header.width, header.height, 3, IMAGE_FLOAT, error);
     if (result != RESULT_OK || take_pixels(image, &header, file->data + header.size)) return result;
     image_destroy(image);
-    return error_set(error, RESULT_BAD_INPUT, "%s: has numbers that are not finite", path);
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%s: has infinite numbers or NaN: expected finite numbers", path);
 }

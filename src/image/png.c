@@ -128,8 +128,10 @@ static Result encode(Codec *codec, Bytes *png, Error *error)
     Result result = RESULT_OK;
     *png = (Bytes){0};
     if (image_size(image) + (size_t)image->height >= ENCODE_MAX_BYTES)
-        return error_set(error, RESULT_FAILED, "an image of %d x %d is too large for PNG here",
-                         image->width, image->height);
+        return error_set(
+            error, RESULT_FAILED,
+            "an image of %d x %d pixels is too large: expected less than 1 GiB of pixels",
+            image->width, image->height);
     if (!(codec->palette ? png_rows_pack_indices : png_rows_pack)(image, &codec->rows) ||
         !make_room(codec))
         result = error_set(error, RESULT_FAILED, "no memory to encode an image of %d x %d",
@@ -266,8 +268,8 @@ static Result make_image(Codec *codec, const char *path, Error *error)
     Image *image = &codec->image;
     long long count = (long long)image->width * image->height;
     if (count > READ_MAX_PIXELS)
-        return error_set(error, RESULT_BAD_INPUT, "%s: %d x %d pixels, at most %d are read", path,
-                         image->width, image->height, READ_MAX_PIXELS);
+        return error_set(error, RESULT_BAD_INPUT, "%s: %d x %d pixels: expected at most %d pixels",
+                         path, image->width, image->height, READ_MAX_PIXELS);
     size_t size = image_size(image), most = READ_MAX_FACTOR * codec->size + READ_SURE_BYTES;
     if (size > most)
         return error_set(error, RESULT_BAD_INPUT,

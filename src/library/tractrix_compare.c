@@ -17,14 +17,14 @@ static Result take_limits(CompareLimits *limits, const TractrixLimits *asked, Er
     if (!(own.pixel_tolerance <= 255 && own.max_failing_percent >= 0 &&
           own.max_failing_percent <= 100 && own.max_flip <= 1))
         return error_set(error, RESULT_USAGE,
-                         "limits: expected at most 255 levels, 100 %% and a "
-                         "FLIP of 1");
+                         "limits: a limit is out of range: expected at most 255 levels, 0 to 100 "
+                         "%% of the pixels, and a FLIP of at most 1");
     if (!(distance >= 1 && distance <= 1000))
         return error_set(error, RESULT_USAGE,
                          "limits.pixels_per_degree: got %g, expected 1 to 1000", distance);
     if (!pixels && !flip)
         return error_set(error, RESULT_USAGE,
-                         "limits: no limit is set: expected one of pixels or of FLIP");
+                         "limits: no limit is set: expected a limit for pixels or for FLIP");
     *limits = (CompareLimits){.pixels_matter = pixels,
                               .pixel_tolerance = own.pixel_tolerance,
                               .max_failing = own.max_failing_percent,
@@ -49,10 +49,8 @@ static Result take_images(Compared *compared, const TractrixImage *const images[
         TRY(library_take_image(&taken[i], images[i], NAMES[i], error));
         if (taken[i].width != taken[0].width || taken[i].height != taken[0].height)
             return error_set(error, RESULT_USAGE,
-                             "%s: has %dx%d pixels, a has %dx%d: expected one "
-                             "size",
-                             NAMES[i], taken[i].width, taken[i].height, taken[0].width,
-                             taken[0].height);
+                             "%s: has %dx%d pixels: expected %dx%d, the size of a", NAMES[i],
+                             taken[i].width, taken[i].height, taken[0].width, taken[0].height);
         TRY(library_copy_image(&compared->image[i], &taken[i], error));
     }
     return images[2] ? mask_create_from(&compared->mask, &compared->image[2], error) : RESULT_OK;

@@ -177,7 +177,7 @@ static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *
     if (asked) TRY(library_take(&options, sizeof options, asked, sizeof options, "options", error));
     if (options.software && options.require_hardware)
         return error_set(error, RESULT_USAGE,
-                         "options: software and require_hardware exclude each other");
+                         "options: software and require_hardware: expected only one of them");
     TRY(check_process(error));
     TRY(create(device, error));
     Opening opening = {&(*device)->gpu,

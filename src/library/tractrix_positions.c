@@ -123,8 +123,8 @@ static Result begin(Mapping *mapping, TractrixSimulation *simulation, int sectio
         return error_set(error, RESULT_USAGE, "section: got %d, expected 0 to %d", section,
                          sections - 1);
     if (part != TRACTRIX_GUIDES && part != TRACTRIX_FOLLOWERS)
-        return error_set(error, RESULT_USAGE, "part: got %d, expected guides or followers",
-                         (int)part);
+        return error_set(error, RESULT_USAGE,
+                         "part: got %d, expected TRACTRIX_GUIDES or TRACTRIX_FOLLOWERS", (int)part);
     LibraryMap *map = &simulation->maps[2 * section + (int)part];
     *mapping = (Mapping){simulation, section, part, map};
     return RESULT_OK;
@@ -166,7 +166,8 @@ static Result check_room(const Copying *copying, Error *error)
     glGetBufferParameteri64v(GL_COPY_WRITE_BUFFER, GL_BUFFER_SIZE, &size);
     glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
     if (!copying->buffer || gpu_check("buffer", NULL) != RESULT_OK)
-        return error_set(error, RESULT_USAGE, "buffer: got %u, which is no buffer of the context",
+        return error_set(error, RESULT_USAGE,
+                         "buffer: got %u, expected a buffer of the current context",
                          copying->buffer);
     if (copying->offset <= size && wanted <= size - copying->offset) return RESULT_OK;
     return error_set(error, RESULT_USAGE,

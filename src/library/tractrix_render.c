@@ -153,12 +153,12 @@ static Result take_view(View *view, const TractrixView *asked, Error *error)
     bool sound = true;
     for (int i = 0; i < 16; ++i) sound = sound && isfinite(m[i]) && isfinite(p[i]);
     if (!sound || !(p[0] > 0 && p[5] > 0) || p[11] != -1 || p[15] != 0)
-        return error_set(error, RESULT_USAGE,
-                         "view: expected finite matrices, the projection a "
-                         "perspective that looks along -z");
+        return error_set(
+            error, RESULT_USAGE,
+            "view: expected finite matrices and a perspective projection that looks along -z");
     if (!is_rigid(m))
         return error_set(error, RESULT_USAGE,
-                         "view.world_to_eye: expected a rotation and a translation alone");
+                         "view.world_to_eye: expected only a rotation and a translation");
     if (!(view->near_distance > 0 && view->far_distance > view->near_distance &&
           isfinite(view->far_distance)))
         return error_set(error, RESULT_USAGE,

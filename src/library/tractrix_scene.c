@@ -243,7 +243,7 @@ static Result refuse_name(const char *name, Error *error)
     const char *nearest = suggest_nearest(name, names, count);
     snprintf(words, sizeof words, nearest ? "did you mean '%s'?" : "see tractrix_parameter%s",
              nearest ? nearest : "");
-    return error_set(error, RESULT_USAGE, "%s: no parameter of the library: %s", name, words);
+    return error_set(error, RESULT_USAGE, "%s: the library has no such parameter: %s", name, words);
 }
 
 static Result set(TractrixScene *scene, int section, const char *name, const char *text,
@@ -255,8 +255,8 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
         return error_set(error, RESULT_USAGE, "section: got %d, expected -1 to %d", section,
                          (int)scene->scene.section_count - 1);
     if (section >= 0 && info->scope != SCOPE_SECTION)
-        return error_set(error, RESULT_USAGE, "%s: belongs to the run: expected section -1",
-                         info->name);
+        return error_set(error, RESULT_USAGE,
+                         "%s: is no parameter of a section: expected section -1", info->name);
     TRY(take_step(scene, (LibraryStep){.info = info, .section = section, .text = strdup(text)},
                   error));
     if (strcmp(info->name, "mesh") == 0) forget_meshes(scene);
@@ -430,8 +430,9 @@ static Result check_points(const float (*position)[3], uint32_t count, Error *er
     for (uint32_t v = 0; v < count; ++v)
         for (int k = 0; k < 3; ++k)
             if (!(position[v][k] >= -1e6f && position[v][k] <= 1e6f))
-                return error_set(error, RESULT_BAD_INPUT,
-                                 "mesh: vertex %u is not finite or beyond 1000 km", v);
+                return error_set(
+                    error, RESULT_BAD_INPUT,
+                    "mesh: a coordinate of vertex %u is NaN, infinite or beyond 1000 km", v);
     return RESULT_OK;
 }
 

@@ -235,8 +235,8 @@ static Result check_drive(const TractrixSimulation *simulation, Error *error)
     double steps = simulation->simulation.schedule.steps_per_frame;
     if (steps > 0 && steps == floor(steps)) return RESULT_OK;
     return error_set(error, RESULT_USAGE,
-                     "a frame is %g steps (fps, speed, sim_rate, substeps): expected a whole "
-                     "number of them where the caller moves the head",
+                     "a frame has %g steps (fps, speed, sim_rate, substeps): expected a whole "
+                     "number of steps, because the caller moves the head",
                      steps);
 }
 
@@ -248,8 +248,9 @@ static Result check_pose(const TractrixSimulation *simulation, uint32_t body,
     TRY(check_body(simulation, body, error));
     TRY(check_drive(simulation, error));
     if (simulation->scene.bodies[body].shape)
-        return error_set(error, RESULT_USAGE,
-                         "head: the mesh deforms: expected its vertices, or no pose");
+        return error_set(
+            error, RESULT_USAGE,
+            "head: the mesh deforms, so a pose cannot move it: expected its vertices, or no pose");
     if (!(fabs(length - 1) < 1e-3))
         return error_set(error, RESULT_USAGE, "head.rotation: has length %g, expected 1", length);
     for (int k = 0; k < 3; ++k)
@@ -299,15 +300,16 @@ static Result check_mesh(const TractrixSimulation *simulation, uint32_t body, co
     TRY(check_drive(simulation, error));
     if (!simulation->assets.bodies[body].anchors.points)
         return error_set(error, RESULT_USAGE,
-                         "position: expected a mesh from an array that deforms "
-                         "(TractrixMesh.deforms)");
+                         "position: the caller cannot move this mesh: expected a mesh from an "
+                         "array with TractrixMesh.deforms");
     if (vertex_count != simulation->assets.meshes[body].vertex_count)
         return error_set(error, RESULT_USAGE, "vertex_count: got %u, expected the mesh's %u",
                          vertex_count, simulation->assets.meshes[body].vertex_count);
     for (size_t i = 0; i < 3 * (size_t)vertex_count; ++i)
         if (!(fabsf(position[i]) <= (float)RIGID_TRACK_MAX))
-            return error_set(error, RESULT_BAD_INPUT,
-                             "position: vertex %zu is not finite or beyond 1000 km", i / 3);
+            return error_set(
+                error, RESULT_BAD_INPUT,
+                "position: a coordinate of vertex %zu is NaN, infinite or beyond 1000 km", i / 3);
     return RESULT_OK;
 }
 

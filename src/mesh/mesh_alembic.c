@@ -3,6 +3,7 @@
 // surfaces (AbcGeom's IPolyMesh, ISubD) with the transforms above them into one mesh. Polygons
 // become triangle fans. Alembic lists corners clockwise; meshes here are counter-clockwise.
 #include "base/alembic.h"
+#include "base/foreign.h"
 #include "mesh/mesh_sequence.h"
 
 #include <stdlib.h>
@@ -77,11 +78,8 @@ static void open_all(AbcMeshes *all, MeshSamples *samples)
     }
     file->reader->at = 0;
     if (reader_ok(file->reader) && all->count == 0)
-        reader_fail(
-            file->reader,
-            curves
-                ? "hair, and no visible mesh: expected a mesh; a hair file is given without --mesh"
-                : "no visible mesh");
+        reader_fail(file->reader,
+                    curves ? "hair and no visible mesh: " FOREIGN_WANTS_MESH : "no visible mesh");
 }
 
 // --- Faces.
@@ -94,7 +92,7 @@ static double *read_fixed(AbcMeshes *all, const AbcMesh *mesh, const char *name,
     const char *path = file->object[mesh->object].path;
     *count = 0;
     if (property && property->last)
-        reader_fail(file->reader, "%s: faces that change: expected the same in all samples", path);
+        reader_fail(file->reader, "%s: faces change: expected the same faces in all samples", path);
     else if (!property || !property->samples)
         reader_fail(file->reader, "%s: no faces: expected %s", path, name);
     return reader_ok(file->reader) ? ogawa_numbers(file, property, 0, count) : NULL;

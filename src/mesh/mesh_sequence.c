@@ -172,10 +172,11 @@ static Result check_finite(const MeshSamples *samples, const char *path, Error *
     for (uint64_t i = 0; i < samples->count * samples->vertex_count; ++i)
         for (int k = 0; k < 3; ++k)
             if (!(fabsf(samples->position[i][k]) <= MESH_MOST_COORDINATE))
-                return error_set(error, RESULT_BAD_INPUT,
-                                 "%s: sample %llu: vertex %llu is not finite, or beyond 1e18", path,
-                                 (unsigned long long)(i / samples->vertex_count),
-                                 (unsigned long long)(i % samples->vertex_count));
+                return error_set(
+                    error, RESULT_BAD_INPUT,
+                    "%s: sample %llu: a coordinate of vertex %llu is NaN, infinite or beyond 1e18",
+                    path, (unsigned long long)(i / samples->vertex_count),
+                    (unsigned long long)(i % samples->vertex_count));
     return RESULT_OK;
 }
 
@@ -200,7 +201,8 @@ static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, cons
             "%s: has no faces: expected --mesh-rest with an OBJ or PLY file that has them", path);
     uint64_t triangles = own ? samples->triangle_count : rest->triangle_count;
     if (triangles == 0 || triangles > UINT32_MAX / 8)
-        return error_set(error, RESULT_BAD_INPUT, "%s: %llu triangles", path,
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: %llu triangles: expected at least 1 and fewer than 2^29", path,
                          (unsigned long long)triangles);
     TRY(mesh_create(mesh, (uint32_t)samples->vertex_count, (uint32_t)triangles, error));
     memcpy(mesh->triangle, own ? samples->triangle : rest->triangle,

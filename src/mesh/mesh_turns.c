@@ -200,8 +200,9 @@ Result mesh_turns_create(MeshTurns *turns, const Mesh *rest, Error *error)
     // number of vertices.
     if (rest->triangle_count > UINT32_MAX / 8 || rest->vertex_count > UINT32_MAX / 4)
         return error_set(error, RESULT_BAD_INPUT,
-                         "the mesh: %u vertices and %u triangles are too many", rest->vertex_count,
-                         rest->triangle_count);
+                         "the mesh: %u vertices and %u triangles: expected fewer than 2^30 "
+                         "vertices and fewer than 2^29 triangles",
+                         rest->vertex_count, rest->triangle_count);
     if (build(turns, rest)) return RESULT_OK;
     mesh_turns_destroy(turns);
     return error_set(error, RESULT_FAILED, "no memory for the turns of %u vertices",

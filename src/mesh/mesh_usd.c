@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Animated meshes in `.usda` files: joins all visible Mesh prims with the transforms above them
 // into one mesh. Polygons become triangle fans.
+#include "base/foreign.h"
 #include "base/usd_stage.h"
 #include "mesh/mesh_sequence.h"
 
@@ -130,7 +131,8 @@ static const UsdValues *find_fixed(Reader *reader, const UsdSamples *samples, co
         reader->line = other->line;
         if (other->count != first->count ||
             memcmp(other->value, first->value, first->count * sizeof *first->value) != 0)
-            reader_fail(reader, "%s that change: expected the same faces in all samples", name);
+            reader_fail(reader, "%s: the faces change: expected the same faces in all samples",
+                        name);
     }
     return reader_ok(reader) ? first : NULL;
 }
@@ -220,10 +222,11 @@ static void read_positions(UsdMeshes *all, const UsdTimes *times, MeshSamples *s
     samples->count = times->count ? times->count : 1;
     const double size = 12.0 * (double)samples->count * (double)samples->vertex_count;
     if (size > 64.0 * ((double)reader->size + 1e6))
-        reader_fail(reader,
-                    "%llu samples of %llu vertices need %.0f MB: more than 64 times the file",
-                    (unsigned long long)samples->count, (unsigned long long)samples->vertex_count,
-                    size / 1e6);
+        reader_fail(
+            reader,
+            "%llu samples of %llu vertices need %.0f MB: more than 64 times the size of the file",
+            (unsigned long long)samples->count, (unsigned long long)samples->vertex_count,
+            size / 1e6);
     if (!mesh_samples_create(samples, reader)) return;
     for (uint64_t s = 0; s < samples->count; ++s)
         for (uint32_t i = 0; i < all->count; ++i)
@@ -255,11 +258,9 @@ static void read(MeshSamples *samples, Reader *reader)
     UsdMeshes all = {.reader = reader};
     usd_stage_read(&all.stage, reader, &MESHES, &all);
     if (reader_ok(reader) && all.count == 0)
-        reader_fail(reader,
-                    all.left_out ? "no visible Mesh prim"
-                    : all.curves
-                        ? "hair, not a mesh: expected a mesh; a hair file is given without --mesh"
-                        : "no Mesh prim with points");
+        reader_fail(reader, all.left_out ? "no visible Mesh prim"
+                            : all.curves ? "hair, not a mesh: " FOREIGN_WANTS_MESH
+                                         : "no Mesh prim with points");
     if (reader_ok(reader)) make_samples(&all, samples);
     samples->unit = (double)all.stage.unit;
     samples->up_z = all.stage.up_z;

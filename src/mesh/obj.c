@@ -2,6 +2,7 @@
 #include "mesh/obj.h"
 
 #include "base/decimal.h"
+#include "base/foreign.h"
 #include "base/outfile.h"
 
 #include <math.h>
@@ -118,7 +119,7 @@ static void *pile_add(Reader *reader, Pile *pile, size_t size)
 {
     if (!reader_ok(reader)) return NULL;
     if (pile->count == UINT32_MAX - 1) {
-        reader_fail(reader, "more than 32-bit indices hold");
+        reader_fail(reader, "too many vertices or faces: expected fewer than 2^32");
         return NULL;
     }
     if (pile->count == pile->capacity) {
@@ -212,12 +213,12 @@ static void read_statements(Obj *obj)
         reader_skip_line(reader);
     }
     if (reader_ok(reader) && obj->triangles[0].count == 0)
-        reader_fail(reader, "no faces: expected a mesh; a hair file is given without --mesh");
+        reader_fail(reader, "no faces: " FOREIGN_WANTS_MESH);
     for (int kind = 0; kind < KIND_COUNT && reader_ok(reader); kind++) {
         if (obj->largest[kind] <= obj->vectors[kind].count) continue;
         reader->line = obj->largest_at[kind];
-        reader_fail(reader, "a face uses %s %u, the file has %zu", KINDS[kind].name,
-                    obj->largest[kind], obj->vectors[kind].count);
+        reader_fail(reader, "a face uses %s %u: expected at most %zu, the number in the file",
+                    KINDS[kind].name, obj->largest[kind], obj->vectors[kind].count);
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/ply_mesh.h"
 
+#include "base/foreign.h"
 #include "base/ply.h"
 
 #include <math.h>
@@ -43,7 +44,7 @@ static void read_vertices(PlyMesh *ply, const PlyElement *element, float unit, b
                              (up_z ? -values[Y] : values[Z]) * (double)unit};
         for (int k = 0; k < 3; k++) {
             if (!(fabs(p[k]) <= (double)MESH_MOST_COORDINATE) && reader_ok(reader))
-                reader_fail(reader, "vertex %u is not finite, or beyond 1e18", v);
+                reader_fail(reader, "a coordinate of vertex %u is NaN, infinite or beyond 1e18", v);
             ply->position[v][k] = (float)p[k];
         }
     }
@@ -80,8 +81,8 @@ static void read_faces(PlyMesh *ply, const PlyElement *element)
 {
     Reader *reader = ply->reader;
     if (!element->has[INDICES] && !element->has[INDEX])
-        reader_fail(reader, "faces without vertex_indices");
-    if (!ply->position) reader_fail(reader, "faces before vertices");
+        reader_fail(reader, "faces without vertex_indices: expected a list of this name");
+    if (!ply->position) reader_fail(reader, "faces before vertices: expected vertices first");
     if (!reader_ok(reader) || !ply_check_count(&ply->file, element)) return;
     for (uint32_t f = 0; f < element->count && reader_ok(reader); f++) {
         double unused[ROLES];
@@ -108,12 +109,10 @@ static void read_elements(PlyMesh *ply, float unit, bool up_z)
                 ply_read_row(&ply->file, element, unused);
     }
     if (reader_ok(reader) && ply->triangles == 0)
-        reader_fail(reader,
-                    strands
-                        ? "hair, not a mesh: expected a mesh; a hair file is given without --mesh"
-                        : "no faces: expected a mesh");
+        reader_fail(reader, strands ? "hair, not a mesh: " FOREIGN_WANTS_MESH
+                                    : "no faces: expected a mesh");
     if (reader_ok(reader) && ply->triangles > UINT32_MAX / 8)
-        reader_fail(reader, "%zu triangles", ply->triangles);
+        reader_fail(reader, "%zu triangles: expected fewer than 2^29", ply->triangles);
 }
 
 static void make_mesh(PlyMesh *ply, Mesh *mesh)

@@ -133,8 +133,8 @@ static Result make_it_fit(Compute *compute, const ComputeUse *use, int *rows, Er
     TRY(compute_bins_grow(&compute->bins, use->pairs, &grown, error));
     if (!grown && *rows == 1)
         return error_set(error, RESULT_FAILED,
-                         "a row of tiles has %llu ribbons, more than lists of %lld bytes hold: "
-                         "--raster blocks draws any number",
+                         "a row of tiles has %llu ribbons, more than fit into lists of %lld bytes: "
+                         "expected fewer, or --raster blocks, which has no limit",
                          (unsigned long long)use->pairs, (long long)compute->bins.pairs.size);
     if (!grown) *rows /= 2;
     return RESULT_OK;
@@ -147,8 +147,8 @@ static Result judge_band(Compute *compute, const ComputeUse *use, int *row, int 
 {
     if (use->longest > (uint32_t)compute->longest)
         return error_set(error, RESULT_FAILED,
-                         "%u ribbons touch one tile of 16x16 pixels, more than the %d that this "
-                         "driver's loops can visit: --raster blocks draws any number",
+                         "%u ribbons touch one tile of 16x16 pixels: expected at most %d, the "
+                         "limit of this driver's loops, or --raster blocks, which has no limit",
                          use->longest, compute->longest);
     if (use->pairs <= (uint64_t)compute->bins.room) {
         counts->pairs += use->pairs;

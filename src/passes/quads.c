@@ -214,10 +214,11 @@ static Result make_it_fit(Quads *quads, const ABufferUse *use, int *rows, Error 
     Result result = abuffer_grow(&quads->abuffer, use, &grown, error);
     if (result != RESULT_OK || grown) return result;
     if (*rows == 1)
-        return error_set(error, RESULT_FAILED,
-                         "one row of the image has %llu hair fragments, more than an A-buffer of "
-                         "%lld bytes holds",
-                         (unsigned long long)use->fragments, (long long)quads->abuffer.nodes.size);
+        return error_set(
+            error, RESULT_FAILED,
+            "one row of the image has %llu hair fragments, more than fit into an A-buffer of %lld "
+            "bytes: expected fewer, or --raster blocks, which has no limit",
+            (unsigned long long)use->fragments, (long long)quads->abuffer.nodes.size);
     *rows = rows_that_fit(quads, use, *rows);
     return RESULT_OK;
 }
@@ -335,8 +336,8 @@ Result quads_take(RenderTarget *target, int place, Image *image, Error *error)
     TRY(render_target_take(target, place, image, &short_of_turns, error));
     if (short_of_turns)
         return error_set(error, RESULT_FAILED,
-                         "a pixel has more than %d hair fragments, more than this driver's loops "
-                         "can visit",
+                         "a pixel has more than %d hair fragments, the limit of this driver's "
+                         "loops: expected fewer, or --raster blocks, which has no limit",
                          ABUFFER_MOST_TURNS);
     return RESULT_OK;
 }

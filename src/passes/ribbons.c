@@ -75,8 +75,8 @@ Result ribbons_begin(Ribbons *ribbons, uint64_t segments, const RibbonsBase *bas
     int64_t most = smaller(RIBBONS_MOST, limits->texture_texels / RIBBON_TEXELS - 1);
     if (segments > (uint64_t)most)
         return error_set(error, RESULT_FAILED,
-                         "%llu segments of hair: --raster compute draws at most %lld at once on "
-                         "this device, --raster blocks has no such limit",
+                         "%llu segments of hair: expected at most %lld, the limit of --raster "
+                         "compute on this device, or --raster blocks, which has no limit",
                          (unsigned long long)segments, (long long)most);
     int64_t count = 1 + (int64_t)segments;
     TRY(make_room(&ribbons->records, limits, "ribbons", count * RECORD_BYTES, GL_RGBA32UI, error));

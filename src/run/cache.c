@@ -59,7 +59,7 @@ static Result read_index(CacheFile *cache, Error *error)
     Bytes index = {0};
     if (size < CACHE_TRAILER_BYTES) return RESULT_OK;
     if (!chunk_file_read_raw(&cache->file, size - CACHE_TRAILER_BYTES, &trailer, sizeof trailer))
-        return error_set(error, RESULT_BAD_INPUT, "%s: its end: %s", cache->file.path,
+        return error_set(error, RESULT_BAD_INPUT, "%s: cannot read its end: %s", cache->file.path,
                          errno ? strerror(errno) : "the file has become shorter");
     if (memcmp(trailer.magic, CACHE_TRAILER, sizeof trailer.magic) != 0) return RESULT_OK;
     errno = 0;
@@ -92,7 +92,7 @@ static Result scan(CacheFile *cache, uint64_t at, Error *error)
         if (result != RESULT_OK) return RESULT_OK;
         if (strcmp(chunk.tag, "INDX") == 0) return RESULT_OK;
         if (strcmp(chunk.tag, "FRAM") != 0 || chunk.number != cache->frame_count) {
-            error_set(&cache->end, RESULT_BAD_INPUT, "%s: byte %llu: not frame %u",
+            error_set(&cache->end, RESULT_BAD_INPUT, "%s: byte %llu: expected frame %u",
                       cache->file.path, (unsigned long long)at, cache->frame_count);
             return RESULT_OK;
         }
@@ -251,8 +251,8 @@ Result cache_file_read(CacheFile *cache, int frame, float head[CACHE_HEAD_FLOATS
         return error_set(error, RESULT_FAILED, "%s: no memory for frame %d", cache->file.path,
                          frame);
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s: frame %d at byte %llu does not fit the cache's hair", cache->file.path,
-                     frame, (unsigned long long)cache->offsets[frame]);
+                     "%s: frame %d at byte %llu: damaged, or of other hair than the cache",
+                     cache->file.path, frame, (unsigned long long)cache->offsets[frame]);
 }
 
 // --- Writing.

@@ -158,7 +158,8 @@ static Result refuse(const Difference *difference, const char *path, Error *erro
     char was[80], is[80];
     print_value(difference->a, was, sizeof was);
     print_value(difference->b, is, sizeof is);
-    return error_set(error, RESULT_BAD_INPUT, "%s: was simulated with %s %s, this scene has %s",
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%s: was simulated with %s %s, but this scene has %s: expected the same value",
                      path, difference->place, was, is);
 }
 
@@ -169,7 +170,9 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
     Bytes now = {0};
     if (!was && json_memory_short())
         return error_set(error, RESULT_FAILED, "%s: no memory for its scene", path);
-    if (!was) return error_set(error, RESULT_BAD_INPUT, "%s: its scene is no JSON object", path);
+    if (!was)
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: the stored scene is damaged: expected a JSON object", path);
     keep_values(was); // earlier versions also wrote the parameters of other solvers
     Result result = cache_scene_describe(&now, simulation, error);
     if (result == RESULT_OK) {
@@ -273,8 +276,10 @@ Result cache_scene_compare_hair(const Bytes *bytes, const Simulation *simulation
         while (i + 1 < count && ends[i] <= bytes->size &&
                memcmp(bytes->data, now.data, ends[i]) == 0)
             ++i;
-        result = error_set(error, RESULT_BAD_INPUT, "%s: was simulated with other hair than %s",
-                           path, count ? simulation->scene->sections[i].file : "none");
+        result =
+            error_set(error, RESULT_BAD_INPUT,
+                      "%s: was simulated with hair that differs from %s: expected the same hair",
+                      path, count ? simulation->scene->sections[i].file : "none");
     }
     bytes_destroy(&now);
     free(ends);

@@ -29,8 +29,8 @@ Result caption_check(const char *words, Error *error)
     for (const char *at = words; *words; at += length + 1) {
         if (find_word(at, &length) == WORD_COUNT)
             return error_set(error, RESULT_USAGE,
-                             "--caption: got '%.*s', expected words out of frame, time, file, "
-                             "solver with commas between",
+                             "--caption: got '%.*s', expected the words frame, time, file, solver, "
+                             "or some of them, separated by commas",
                              (int)length, at);
         if (!at[length]) break;
     }

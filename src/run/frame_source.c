@@ -108,7 +108,8 @@ static bool find_state(FrameSource *source, FILE *messages, Error *error)
         return true;
     }
     if (result == RESULT_OK)
-        error_set(error, result, "%s: is the state after frame %d, but the cache ends before it",
+        error_set(error, result,
+                  "%s: holds the state after frame %d, but the cache ends before that frame",
                   source->state_path, frame);
     if (messages) fprintf(messages, "%s: simulating again from the start\n", error->text);
     bytes_destroy(&source->state);

@@ -20,15 +20,16 @@ static Result refuse_changes(const Section *section, const Strands *strands, con
     if (!paint->color || paint->colors_from_file || *params->color_map) return RESULT_OK;
     for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; ++i)
         if (section_tracks_has(&section->tracks, params_find(NAMES[i])))
-            return error_set(error, RESULT_USAGE,
-                             "%s: it cannot change over time with %s: expected one value, or %s",
-                             NAMES[i],
-                             params->tip_length > 0 ? "tips of another color"
-                             : opacity              ? "the file's opacities"
-                                                    : "the file's thickness",
-                             params->tip_length > 0 ? "--tip-length 0"
-                             : opacity              ? "--no-file-opacity"
-                                                    : "--no-file-thickness");
+            return error_set(
+                error, RESULT_USAGE,
+                "%s: cannot change over time, because the hair has %s: expected one value, or %s",
+                NAMES[i],
+                params->tip_length > 0 ? "tips of another color"
+                : opacity              ? "the file's opacities"
+                                       : "the file's thickness",
+                params->tip_length > 0 ? "--tip-length 0"
+                : opacity              ? "--no-file-opacity"
+                                       : "--no-file-thickness");
     return RESULT_OK;
 }
 

@@ -233,10 +233,10 @@ static Result check_options(const OutputOptions *options, const Target *target, 
                          "%s: one image for %d frames: expected - (PNG) or -.y4m, or --frames 1",
                          options->target, options->frame_count);
     if (many)
-        return error_set(
-            error, RESULT_USAGE,
-            "%s: one name for %d frames: expected a number in it (frame_%%04d.png), or --frames 1",
-            options->target, options->frame_count);
+        return error_set(error, RESULT_USAGE,
+                         "%s: one file name for %d frames: expected a frame number in the name "
+                         "(frame_%%04d.png), or --frames 1",
+                         options->target, options->frame_count);
     const char *opaque = target->format == TARGET_Y4M    ? ".y4m"
                          : target->format == TARGET_JPEG ? "JPEG"
                                                          : NULL;
@@ -247,13 +247,16 @@ static Result check_options(const OutputOptions *options, const Target *target, 
             options->target, opaque);
     if (target->floats != (options->kind == IMAGE_FLOAT) ||
         (target->format >= TARGET_JPEG && options->kind != IMAGE_8))
-        return error_set(error, RESULT_USAGE, "%s: this format cannot store images of this depth",
+        return error_set(error, RESULT_USAGE,
+                         "%s: this format cannot store the image's kind of numbers: expected .png "
+                         "for whole numbers, .pfm or .exr for floats",
                          options->target);
     if (options->channels != 3 && options->channels != 4)
-        return error_set(error, RESULT_USAGE, "%s: frames of %d channels, expected 3 or 4",
+        return error_set(error, RESULT_USAGE, "%s: frames of %d channels: expected 3 or 4",
                          options->target, options->channels);
     if (options->width < 1 || options->height < 1)
-        return error_set(error, RESULT_USAGE, "%s: frames of %d x %d pixels", options->target,
+        return error_set(error, RESULT_USAGE,
+                         "%s: frames of %d x %d pixels: expected at least 1 x 1", options->target,
                          options->width, options->height);
     return RESULT_OK;
 }

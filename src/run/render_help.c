@@ -70,7 +70,7 @@ static const char *const SCENE_KEYS[][3] = {
     {"camera",
      "{\"keys\": [{\"time\": 0, \"eye\": [0, 1.6, 2], \"target\": [0, 1.5, 0], "
      "\"fov\": 30}, ...]}",
-     "path of the camera; a value that is in no key is that of the option of the same name"},
+     "path of the camera; if no key has one of the values, the option of the same name applies"},
     {"camera", "{\"eye\": [\"1.5*sin(t)\", 0.1, \"1.5*cos(t)\"], \"fov\": \"30-5*t\"}",
      "the same by formulas; each value has keys or formulas"},
     {"colliders",
@@ -83,12 +83,11 @@ static const char *const SCENE_KEYS[][3] = {
      "\"direction\": [0, -1, 0], \"inner\": 0, \"outer\": 45}, ...]",
      "up to 8 lights: directional, point or spot; direction is the direction in which the light "
      "travels. A point or spot light has its intensity at `distance` (m) and falls off with the "
-     "square of the distance. A spot is full up to `inner` degrees off its axis and dark beyond "
-     "`outer`. `radius` (0) softens shadows and highlights: degrees as seen from the hair for "
-     "directional lights, metres for others. The first light casts shadows, and so do others with "
-     "\"shadow\": true (unless "
-     "--shadow is none). Without this key the lights are those of --look: three (studio) or two "
-     "(plain); an empty list leaves ambient light only"},
+     "square of the distance. A spot has its full intensity up to `inner` degrees off its axis and "
+     "is dark beyond `outer`. `radius` (0) softens shadows and highlights: degrees as seen from "
+     "the hair for directional lights, metres for others. The first light casts shadows, and so do "
+     "others with \"shadow\": true (unless --shadow is none). Without this key the lights are "
+     "those of --look: three (studio) or two (plain); an empty list leaves ambient light only"},
     {"$schema", "\"/usr/share/tractrix/scene.schema.json\"",
      "JSON schema with which editors complete and check the file; --help schema prints it"},
     {NULL, NULL, NULL}};

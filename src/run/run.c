@@ -102,8 +102,9 @@ static Result check_target(const RunParams *run, const char *path,
         result = error_set(error, RESULT_USAGE,
                            "--stats -: images go to standard output: expected a file");
     if (result == RESULT_OK && target.kind == TARGET_VIDEO && run->part[1] > 1)
-        result = error_set(error, RESULT_USAGE,
-                           "--part: %s holds all frames: expected one file per frame", path);
+        result =
+            error_set(error, RESULT_USAGE,
+                      "--part: %s is one file with all frames: expected one file per frame", path);
     target_destroy(&target);
     return result;
 }
@@ -112,9 +113,10 @@ static Result check_sheet(const RunParams *run, Error *error)
 {
     const int *sheet = run->contact_sheet;
     if ((sheet[0] == 1 && sheet[1] == 1) || run->part[1] == 1) return RESULT_OK;
-    return error_set(error, RESULT_USAGE,
-                     "--contact-sheet %dx%d: expected no --part, since one file holds all frames",
-                     sheet[0], sheet[1]);
+    return error_set(
+        error, RESULT_USAGE,
+        "--part: a contact sheet of %dx%d is one file with all frames: expected one file per frame",
+        sheet[0], sheet[1]);
 }
 
 // Checks everything that can be checked before a file is opened.

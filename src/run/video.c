@@ -97,7 +97,7 @@ static Result check_options(const VideoOptions *options, const Format *format, E
             "%s: %s cannot hold a transparent background: expected .webm or PNG frames",
             options->path, format->suffix);
     if (!(options->fps > 0.0 && options->fps <= FPS_MAX))
-        return error_set(error, RESULT_USAGE, "%s: %g frames a second, expected at most %g",
+        return error_set(error, RESULT_USAGE, "%s: %g frames a second: expected at most %g",
                          options->path, options->fps, FPS_MAX);
     return RESULT_OK;
 }
@@ -326,7 +326,7 @@ Result video_finish(Video *video, uint64_t *bytes, Error *error)
     *bytes = (uint64_t)status.st_size;
     if (*bytes == 0)
         return error_set(error, RESULT_FAILED,
-                         "%s: ffmpeg ended well but wrote nothing: expected a video",
+                         "%s: ffmpeg reported success but wrote nothing: expected a video",
                          video->file.path);
     return outfile_commit(&video->file, error);
 }

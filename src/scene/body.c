@@ -67,7 +67,7 @@ static Result check_distance(const Body *body, Error *error)
     if (far <= BODY_FAR) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
                      "%s: half of the roots are more than %.3g m from the mesh: expected at most "
-                     "%.3g (check --mesh-unit, --mesh-up and --mesh-rest)",
+                     "%.3g m (check --mesh-unit, --mesh-up and --mesh-rest)",
                      body->name, (double)far, (double)BODY_FAR);
 }
 

@@ -60,7 +60,9 @@ Result colliders_add(Colliders *colliders, const Collider *collider, Error *erro
         if (!is_named(added.kind, i, "nx")) continue;
         double x = (double)number[0], y = (double)number[1], z = (double)number[2];
         double length = sqrt(x * x + y * y + z * z);
-        if (!(length > 0)) return error_set(error, RESULT_USAGE, "%s: expected a direction", name);
+        if (!(length > 0))
+            return error_set(error, RESULT_USAGE,
+                             "%s: the direction is 0,0,0: expected another one", name);
         for (int k = 0; k < 3; ++k) number[k] = (float)((double)number[k] / length);
     }
     Collider *list = realloc(colliders->list, (colliders->count + (size_t)1) * sizeof *list);
@@ -193,7 +195,8 @@ static Result read_collider(Colliders *colliders, const JsonPlace *place, const 
                              collider.numbers, error));
     }
     if (word && TABLE[collider.kind].world)
-        return json_fail(&frame, error, "a %s always stands in the world", name);
+        return json_fail(&frame, error, "a %s cannot move with the head: expected no key 'frame'",
+                         name);
     int index = 0;
     if (word) TRY(json_read_choice(&frame, word, FRAME_WORDS, &index, error));
     collider.world = index == 1;

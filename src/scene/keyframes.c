@@ -12,11 +12,13 @@ Result keyframes_append(Keyframes *keys, double time, const float *value, uint32
 {
     assert(width >= 1 && width <= KEYFRAMES_MAX_WIDTH &&
            (keys->count == 0 || keys->width == width));
-    if (!isfinite(time)) return error_set(error, RESULT_BAD_INPUT, "time %g is not finite", time);
+    if (!isfinite(time))
+        return error_set(error, RESULT_BAD_INPUT, "time: got %g, expected a finite number", time);
     if (keys->count > 0 && time <= keys->time[keys->count - 1])
-        return error_set(error, RESULT_BAD_INPUT,
-                         "time %.9g s is not later than that of the key before, %.9g s", time,
-                         keys->time[keys->count - 1]);
+        return error_set(
+            error, RESULT_BAD_INPUT,
+            "time: got %.9g s, expected more than %.9g s, the time of the previous key", time,
+            keys->time[keys->count - 1]);
     uint32_t count = keys->count;
     // Room doubles when the count reaches a power of two.
     if ((count & (count - 1)) == 0) {

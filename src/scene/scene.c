@@ -85,7 +85,8 @@ void scene_destroy(Scene *scene)
 Result scene_add_section(Scene *scene, const char *file, const SectionParams *params, Error *error)
 {
     if (scene->section_count == SCENE_MAX_SECTIONS)
-        return error_set(error, RESULT_USAGE, "more than %d hair files", SCENE_MAX_SECTIONS);
+        return error_set(error, RESULT_USAGE, "too many hair files: expected at most %d",
+                         SCENE_MAX_SECTIONS);
     Section section = {.file = strdup(file)};
     Section *sections =
         realloc(scene->sections, (scene->section_count + (size_t)1) * sizeof sections[0]);

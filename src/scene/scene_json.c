@@ -339,7 +339,7 @@ static Result refuse_both(const Document *document, const char *name, const Trac
 {
     if (!track_is_given(track) || !json_object_get(document->json, name)) return RESULT_OK;
     JsonPlace place = {.parent = &document->root, .key = name};
-    return json_fail(&place, error, "given here and by 'camera'");
+    return json_fail(&place, error, "given here and by 'camera': expected only one of them");
 }
 
 static Result read_parts(Scene *scene, const Document *document, Error *error)

@@ -40,14 +40,16 @@ Result scene_open(Scene *scene, const char *const *files, size_t count,
 {
     const char *scene_file = NULL;
     for (size_t i = 0; i < count; i++) {
-        if (!files[i][0]) return error_set(error, RESULT_USAGE, "the name of a file is empty");
+        if (!files[i][0])
+            return error_set(error, RESULT_USAGE,
+                             "got an empty name, expected the name of a hair or scene file");
         if (scene_is_file(files[i])) scene_file = files[i];
     }
     if (!scene_file) return add_sections(scene, files, count, &overrides->presets, error);
     if (count > 1)
         return error_set(error, RESULT_USAGE,
-                         "%.200s is a scene file: expected no other file beside it "
-                         "(name hair in its 'sections')",
+                         "%.200s is a scene file: expected no other file with it (hair files "
+                         "belong in its 'sections')",
                          scene_file);
     scene_destroy(scene);
     return scene_read_unchecked(scene, scene_file, overrides, error);

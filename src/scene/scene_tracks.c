@@ -61,8 +61,9 @@ static Result read_key(const Member *members, size_t count, const JsonPlace *pla
     TRY(json_read_number(&time_place, time_value, -SCENE_TIME_MAX_S, SCENE_TIME_MAX_S, "seconds",
                          time, error));
     if (*time <= before)
-        return json_fail(&time_place, error, "got %.9g, expected more than %.9g, the key before",
-                         *time, before);
+        return json_fail(&time_place, error,
+                         "got %.9g, expected more than %.9g, the time of the previous key", *time,
+                         before);
     if (json_object_size(key) == 1)
         return json_fail(place, error, "expected a key '%s' beside 'time'", members[0].name);
 
@@ -128,7 +129,8 @@ static Result read_formulas(const Member *member, const JsonPlace *parent, const
     const json_t *value = member->formula ? json_object_get(object, member->formula) : NULL;
     JsonPlace place = {.parent = parent, .key = member->formula};
     if (!value) return RESULT_OK;
-    if (member->track->keys.count > 0) return json_fail(&place, error, "given here and by 'keys'");
+    if (member->track->keys.count > 0)
+        return json_fail(&place, error, "given here and by 'keys': expected only one of them");
     if (member->width == 1) return read_formula(member, 0, &place, value, error);
     if (!json_is_array(value) || json_array_size(value) != member->width)
         return json_refuse(&place, value, "an array of three numbers or formulas of t", error);

@@ -429,8 +429,10 @@ static Result read_chunk(ChunkFile *file, uint64_t at, const char *tag, size_t s
     Chunk chunk;
     TRY(chunk_find(file, at, &chunk, error));
     if (strcmp(chunk.tag, tag) != 0 || chunk.size != size)
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%s: not a distance field that this version reads", file->path);
+        return error_set(
+            error, RESULT_BAD_INPUT,
+            "%s: not a distance field that this version can read: expected one that it has written",
+            file->path);
     *end = chunk_end(&chunk);
     return chunk_read(file, &chunk, bytes, error);
 }

@@ -95,9 +95,10 @@ static Result create_batches(Follow *follow, uint32_t guide_batch, const FollowP
     const HairBatch *guides = &follow->guides->batches[guide_batch];
     uint32_t n = guides->vertex_count, most = guides_that_fit(follow, n, limits);
     if (most == 0)
-        return error_set(error, RESULT_FAILED,
-                         "%u followers of %u vertices exceed this driver's buffers",
-                         follow->per_guide, n);
+        return error_set(
+            error, RESULT_FAILED,
+            "%u followers of %u vertices exceed the limit of this driver's buffers: expected fewer",
+            follow->per_guide, n);
     for (uint32_t first = 0; first < guides->strand_count; first += most) {
         uint32_t left = guides->strand_count - first, count = left < most ? left : most;
         if (!add_batch(follow)) return error_set(error, RESULT_FAILED, "no memory for followers");

@@ -25,7 +25,7 @@ Result gather_create(Gather *gather, const Gpu *gpu, const Hair *hair, const uin
     int64_t most = gather->alignment + 4 * (int64_t)sizeof(float) * (int64_t)hair->particle_count;
     if (most > gpu->limits.storage_block)
         return error_set(error, RESULT_FAILED,
-                         "%lld bytes of positions: the driver lets a shader write at most %lld",
+                         "%lld bytes of positions: expected at most %lld, the limit of this driver",
                          (long long)most, (long long)gpu->limits.storage_block);
     Result result = step_pass_create(&gather->pass, gpu, "sim/gather.comp", NULL, error);
     THEN(result, upload_begins(gather, &gpu->limits, first, error));

@@ -120,7 +120,9 @@ static Result create_batches(Hair *hair, const Strands *strands, const Order *or
                  n = strands_size(strands, order->strand[begin]);
         if (end == begin)
             return error_set(error, RESULT_FAILED,
-                             "a strand of %u vertices exceeds this driver's buffers", n);
+                             "a strand of %u vertices exceeds the limit of this driver's buffers: "
+                             "expected fewer",
+                             n);
         HairBatch *more = realloc(hair->batches, (hair->batch_count + 1) * sizeof *more);
         if (!more) return error_set(error, RESULT_FAILED, "no memory for a batch of strands");
         hair->batches = more;

@@ -271,5 +271,5 @@ Result simulation_state_restore(Simulation *simulation, const Bytes *state, Erro
             inbetween_keep(&simulation->sections[i].inbetween, true);
     free(list.buffers);
     if (good && archive.left == 0) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "the state is not of this simulation");
+    return error_set(error, RESULT_BAD_INPUT, "the state belongs to another simulation");
 }

@@ -51,7 +51,8 @@ static Result check_variant(const SolverType *type, const char *variant, Error *
     for (; type->variants[count]; ++count)
         if (strcmp(type->variants[count], variant) == 0) return RESULT_OK;
     if (count == 0)
-        return error_set(error, RESULT_USAGE, "--variant: got '%s', --algo %s has no variants",
+        return error_set(error, RESULT_USAGE,
+                         "--variant: got '%s', expected none, since --algo %s has no variants",
                          variant, type->name);
     char words[200];
     return error_set(error, RESULT_USAGE, "--variant: --algo %s has no variant '%s': %s",

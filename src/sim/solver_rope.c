@@ -60,7 +60,7 @@ static Result check(const SolverSetup *setup, Error *error)
     if (is_bullet(setup->params) && setup->params->rope_compliance > 0)
         return error_set(
             error, RESULT_USAGE,
-            "rope_compliance: --variant bullet has no compliance: expected --variant xpbd");
+            "--rope-compliance: has no effect with --variant bullet: expected --variant xpbd");
     return RESULT_OK;
 }
 
@@ -81,7 +81,7 @@ const SolverType SOLVER_ROPE = {
     .name = "rope",
     .summary = "position-based dynamics as in Bullet's soft bodies; variant xpbd: small steps "
                "instead of many passes",
-    .lengths = "within what its iterations allow; drawn exactly",
+    .lengths = "strands stretch, the less the more iterations; drawn with exact lengths",
     .style = "position springs, --style, --style-stiffness",
     .variants = {"bullet", "xpbd"},
     .recipes = {&RECIPE},

@@ -50,7 +50,7 @@ const SolverType SOLVER_SPLIT = {
     .summary = "only the tip is simulated, the strand trails behind it (tractrices); cheap, "
                "without waves along the strand",
     .lengths = "exact",
-    .style = "mixed into what is drawn, --style",
+    .style = "mixed into the drawn hair, --style",
     .variants = {"ball", "dragged", "thesis"},
     .published = "thesis",
     .recipes = {&RECIPE},

@@ -101,7 +101,7 @@ const SolverType SOLVER_SPRING = {
     .name = "spring",
     .summary =
         "mass-spring system: stiff springs along the segments, angular springs towards the style",
-    .lengths = "within what its stiffness allows; drawn exactly",
+    .lengths = "strands stretch, the less the stiffer they are; drawn with exact lengths",
     .style = "angular springs, --style, --spring-angular",
     .variants = {"implicit", "explicit"},
     .recipes = {&IMPLICIT, &EXPLICIT},

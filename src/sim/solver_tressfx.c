@@ -133,8 +133,8 @@ const SolverType SOLVER_TRESSFX = {
     .name = "tressfx",
     .summary = "AMD's TressFX: constraints pull vertices and bends to the style; fast moves of the "
                "head carry whole strands along",
-    .lengths = "exact; tressfx4: stretch",
-    .style = "local and global shape, --style, its own flags",
+    .lengths = "exact; variant tressfx4: strands stretch",
+    .style = "local and global shape, --style, and the options --tressfx-*",
     .variants = {"steady", "tressfx4"},
     .published = "tressfx4",
     .recipes = {&RECIPE},

@@ -149,7 +149,7 @@ static Result fail_too_long(const FormatSource *source, uint32_t s, uint32_t siz
                             Error *error)
 {
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s%s%llu: strand %u has %u vertices, at most %d work", path,
+                     "%s%s%llu: strand %u has %u vertices: expected at most %d", path,
                      source->vertex_line ? ":" : ": byte ", (unsigned long long)source->place[s], s,
                      size, STRANDS_MAX_SIZE);
 }
@@ -195,9 +195,10 @@ static Result mend_frames(FormatSource *source, const char *path, uint32_t file_
         float(*to)[3] = source->frames + (size_t)f * count;
         for (uint32_t v = 0; v < count; v++) {
             if (!is_usable(from[kept_from[v]]))
-                return error_set(error, RESULT_BAD_INPUT,
-                                 "%s: frame %d: vertex %u is not finite or beyond 1000 km", path,
-                                 source->first_frame + (int)f, kept_from[v]);
+                return error_set(
+                    error, RESULT_BAD_INPUT,
+                    "%s: frame %d: a coordinate of vertex %u is NaN, infinite or beyond 1000 km",
+                    path, source->first_frame + (int)f, kept_from[v]);
             memmove(to[v], from[kept_from[v]], sizeof *to);
         }
     }
@@ -209,7 +210,7 @@ Result strands_mend(FormatSource *source, const char *path, StrandsReport *repor
     uint32_t count = source->strands.vertex_count, *kept_from = NULL;
     if (source->strands.followers > STRANDS_MAX_FOLLOWERS)
         return error_set(error, RESULT_BAD_INPUT,
-                         "%s: asks for %u followers a guide: expected at most %d", path,
+                         "%s: %u followers for each guide: expected at most %d", path,
                          source->strands.followers, STRANDS_MAX_FOLLOWERS);
     if (!(source->strands.follower_radius >= 0 && source->strands.follower_radius <= FARTHEST)) {
         note(report, DEFECT_ATTRIBUTE, count ? source->place[0] : 0);
@@ -257,9 +258,10 @@ static Result check_strand(const Strands *strands, uint32_t s, const char *name,
                          name, s, size, STRANDS_MAX_SIZE);
     for (uint32_t v = begin; v < end; v++)
         if (!is_usable(strands->position[v]))
-            return error_set(error, RESULT_BAD_INPUT,
-                             "%s: strand %u: vertex %u is not finite or beyond 1000 km", name, s,
-                             v - begin);
+            return error_set(
+                error, RESULT_BAD_INPUT,
+                "%s: strand %u: a coordinate of vertex %u is NaN, infinite or beyond 1000 km", name,
+                s, v - begin);
     double nearest = nearest_apart(strands, begin, end);
     for (uint32_t v = begin + 1; v < end; v++)
         if (coincide(strands->position[v - 1], strands->position[v], nearest))

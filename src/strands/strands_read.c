@@ -20,8 +20,9 @@ static Result refuse_zip(Reader *reader)
     bool usd = memmem(reader->data, reader->size < 300 ? reader->size : 300, ".usd", 4) != NULL;
     if (usd)
         return reader_fail(reader, "not supported: a USD package (.usdz): " FOREIGN_BLENDER_HAIR);
-    return reader_fail(reader, "not supported: a zip archive: unpack it (a .npz's first file is a "
-                               ".npy)");
+    return reader_fail(
+        reader,
+        "not supported: a zip archive: unpack it (a .npz file would begin with a .npy file)");
 }
 
 // XGen files begin with a comment like those of Wavefront files.
@@ -201,7 +202,7 @@ static Result refuse_empty(const StrandsReport *report, const char *name, Error 
 {
     char text[900];
     if (!describe_first_defect(report, name, text, sizeof text))
-        snprintf(text, sizeof text, "%s: nothing but roots", name);
+        snprintf(text, sizeof text, "%s: has only roots, no strands", name);
     return error_set(error, RESULT_BAD_INPUT, "%s (no usable strand among %u)", text,
                      report->declared_strands);
 }
@@ -231,10 +232,10 @@ static Result check_wishes(const FormatSource *source, const char *name, const c
                            Error *error)
 {
     if (source->wishes.points_per_strand && !source->used_points)
-        return error_set(error, RESULT_USAGE,
-                         "%s: --points-per-strand has no effect: this %s file says where strands "
-                         "end",
-                         name, format);
+        return error_set(
+            error, RESULT_USAGE,
+            "%s: --points-per-strand has no effect: this %s file itself says where strands end",
+            name, format);
     if (source->wishes.array && !source->used_array)
         return error_set(error, RESULT_USAGE, "%s: --array has no effect: it is for .npz files",
                          name);

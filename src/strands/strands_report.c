@@ -108,8 +108,8 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
     static const struct {
         const char *one, *many, *cure;
     } words[DEFECT_KINDS] = {
-        [DEFECT_NOT_FINITE] = {"strand with a coordinate that is not finite or beyond 1000 km",
-                               "strands with a coordinate that is not finite or beyond 1000 km",
+        [DEFECT_NOT_FINITE] = {"strand with a coordinate that is NaN, infinite or beyond 1000 km",
+                               "strands with a coordinate that is NaN, infinite or beyond 1000 km",
                                "dropped"},
         [DEFECT_TOO_SHORT] = {"strand of fewer than two distinct vertices",
                               "strands of fewer than two distinct vertices", "dropped"},
@@ -120,7 +120,7 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
         [DEFECT_OVER_LIMIT] = {"strand of more than maxNumVerticesInStrand vertices",
                                "strands of more than maxNumVerticesInStrand vertices",
                                "kept whole"},
-        [DEFECT_UNREAD] = {"byte behind all known arrays", "bytes behind all known arrays",
+        [DEFECT_UNREAD] = {"byte after all known arrays", "bytes after all known arrays",
                            "not read"},
     };
     const Defect *defect = &report->defects[kind];

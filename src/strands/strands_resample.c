@@ -157,13 +157,12 @@ static Result make_room(Strands *to, const Strands *from, const ResampleOptions 
         double count = count_wanted(from, s, options);
         if (count > STRANDS_MAX_SIZE)
             return error_set(error, RESULT_FAILED,
-                             "strand %u would have %.0f vertices, at most %d work", s, count,
+                             "strand %u would have %.0f vertices: expected at most %d", s, count,
                              STRANDS_MAX_SIZE);
         all += count;
     }
     if (all >= UINT32_MAX)
-        return error_set(error, RESULT_FAILED, "%.0f vertices are more than 32-bit indices hold",
-                         all);
+        return error_set(error, RESULT_FAILED, "%.0f vertices: expected fewer than 2^32", all);
     TRY(strands_create(to, from->strand_count, (uint32_t)all, error));
     for (uint32_t s = 0; s < from->strand_count; s++)
         to->first[s + 1] = to->first[s] + (uint32_t)count_wanted(from, s, options);

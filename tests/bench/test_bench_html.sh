@@ -34,9 +34,9 @@ run 2 page --html "$work/none.html"; one_line
 run 2 page "$work/one.csv" --html "$work/none.html" --csv "$work/none.csv"; one_line
 run 3 page "$work/none.csv" --html "$work/none.html"; says none.csv; one_line
 printf 'a,b\n1\n' >"$work/cut.csv"
-run 3 page "$work/cut.csv" --html "$work/none.html"; says "1 fields, the header has 2"; none "$work/none.html"
+run 3 page "$work/cut.csv" --html "$work/none.html"; says "1 fields: expected 2, as in the header"; none "$work/none.html"
 run 1 page "$work/one.csv" --html /proc/none/x.html; one_line
-run 2 shaders --html "$work/none.html"; says "has no rows"; none "$work/none.html"
+run 2 shaders --html "$work/none.html"; says "writes no rows"; none "$work/none.html"
 
 claim "in a browser"
 if [ -z "$browser" ]; then skip "no chromium here" && finish; fi

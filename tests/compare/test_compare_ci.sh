@@ -54,7 +54,7 @@ for jobs in 1 2; do
     run 3 -q "$work/a" "$work/b" -j $jobs --mask README.md; one_line; says "README.md"
 done
 mkdir "$work/masks"
-run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "no mask there"
+run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "no masks: expected images"
 run 3 "$work/a" "$work/b" --mask "$work/none/"; one_line; says "none"
 run 2 "$work/a" "$work/b" --mask "$work/masks/m_%d.pfm"; one_line; says "expected a file or a folder"
 run 3 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/m_%d.pfm"; one_line
@@ -69,8 +69,8 @@ run 0 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/f_%d.pfm"
 run 0 "$work/a/f_2.pfm" "$work/b/f_2.pfm" --mask "$work/masks/"
 run 0 "$work/a" "$work/b" --mask "$work/left.pfm"
 cp "$work/left.pfm" "$work/masks/f_3.pfm"
-run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "no image belongs to the mask f_3.pfm: expected the name of an image"
-run 3 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/f_%d.pfm"; one_line; says "no image belongs to the mask f_3.pfm: expected the number of an image"
+run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "the mask f_3.pfm belongs to no image: expected a mask with the name of an image"
+run 3 "$work/a/f_%d.pfm" "$work/b/f_%d.pfm" --mask "$work/masks/f_%d.pfm"; one_line; says "the mask f_3.pfm belongs to no image: expected a mask with the number of an image"
 mv "$work/masks/f_3.pfm" "$work/masks/f_2.PNG"
 run 3 "$work/a" "$work/b" --mask "$work/masks"; one_line; says "two masks for f_2.pfm"
 
@@ -160,7 +160,7 @@ printf 'a%%%%b%%.png: odd\n' >"$work/lines"
 run 1 "$work/a" "$work/b" --unrendered "$work/lines"; says "a%%b%.png: unrendered: odd"; says "f_2.pfm: missing"
 printf 'nothing\n' >"$work/lines"
 run 3 "$work/a" "$work/b" --unrendered "$work/lines"; one_line; says "got 'nothing', expected NAME: REASON"
-run 2 $a $b --unrendered "$work/lines"; one_line; says "is for folders"
+run 2 $a $b --unrendered "$work/lines"; one_line; says "expected two folders"
 run 3 "$work/a" "$work/b" --commands "$work/lines"; one_line; says "got 'nothing', expected NAME: COMMAND"
 : >"$work/lines"
 run 1 "$work/a" "$work/b" --unrendered "$work/lines"; says "f_2.pfm: missing"
@@ -173,6 +173,6 @@ run 0 "$work/a" "$work/b" --only f_1.pfm; says "1 image: 1 same"
 run 1 "$work/a" "$work/b" --only f_%d.pfm; says "2 images: 1 same, 1 missing"
 run 0 "$work/a" "$work/b" --only f_1.pfm --mask "$work/masks" # the mask of another image
 run 3 "$work/a" "$work/b" --only f_3.pfm; one_line; says "--only f_3.pfm: no image of this name"
-run 2 $a $b --only f_1.pfm; one_line; says "is for folders"
+run 2 $a $b --only f_1.pfm; one_line; says "expected two folders"
 
 finish

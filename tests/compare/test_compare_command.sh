@@ -45,7 +45,7 @@ for file in "$work/text.png" "$work/cut.png" "$work/missing.png"; do
 done
 run 3 "$work/nothing/" $golden; says "nothing"
 mkdir "$work/empty"
-run 3 "$work/empty" "$work/empty"; says "no image in either"
+run 3 "$work/empty" "$work/empty"; says "no images: expected .png, .pfm or .exr files"
 
 claim "help and version are answered"
 run 0 --help; says "--max-failing-pixels N|P%"; run 0 --help=man; says ".TH TRACTRIX-COMPARE 1"; run 0 --version; says "tractrix-compare "

@@ -53,7 +53,7 @@ for wrong in 2 "2," ",1" 300,1 2,1.5 2,101%; do compare 2 --platform $platform -
 
 claim "a GPU's images are not compared with a CPU's unless that is asked for"
 compare 1 --platform nvidia-h100-550
-says "x_0.pfm: new: no $g/nvidia/x_0.pfm; the golden for all platforms is used for GPUs only with --any-platform"; says "4 images: 4 new"
+says "x_0.pfm: new: no $g/nvidia/x_0.pfm; images of GPUs are compared with the golden for all platforms only if --any-platform is given"; says "4 images: 4 new"
 compare 1 --platform nvidia-h100-550 --any-platform; says "golden: $g/x_0.pfm (common)"; says "3 same, 1 different"
 grey "$g/nvidia/x_1.pfm" 0
 compare 1 --platform nvidia-a100-535; says "golden: $g/nvidia/x_1.pfm (class)"; says "4 images: 1 same, 3 new"
@@ -67,7 +67,7 @@ compare 0 --platform $platform --pixel-tolerance 0
 compare 0 --platform nvidia-h100-550 --update; equal "$g/nvidia/x_20.pfm" "$new/x_20.pfm"
 
 claim "--update --level writes that level, where its fallback is not equal"
-compare 0 --platform $other --update --level platform; says "left to $g/x_1.pfm, which is equal"; none "$g/$other"
+compare 0 --platform $other --update --level platform; says "needs no golden of its own, because $g/x_1.pfm is equal"; none "$g/$other"
 grey "$new/x_1.pfm" 5
 compare 0 --platform $other --update --level platform; equal "$g/$other/x_1.pfm" "$new/x_1.pfm"; none "$g/$other/x_0.pfm"
 says "4 references updated"
@@ -76,7 +76,7 @@ compare 0 --platform $other --pixel-tolerance 0; says "golden: $g/$other/x_1.pfm
 claim "--update drops a golden that has become equal to its fallback"
 grey "$new/x_1.pfm" 1
 compare 1 --platform $other; says "x_1.pfm: different"
-compare 0 --platform $other --update --json "$work/report.json"; says "x_1.pfm: different"; says "left to $g/x_1.pfm, which is equal"; none "$g/$other/x_1.pfm"
+compare 0 --platform $other --update --json "$work/report.json"; says "x_1.pfm: different"; says "needs no golden of its own, because $g/x_1.pfm is equal"; none "$g/$other/x_1.pfm"
 in_file "$work/report.json" "\"left_to\": \"$g/x_1.pfm\""
 compare 0 --platform $other --pixel-tolerance 0
 cp "$g/x_1.pfm" "$g/cpu/x_1.pfm"
@@ -90,7 +90,7 @@ TRACTRIX_BIN=$(realpath "$bin"); export TRACTRIX_BIN
 program=scripts/compare-goldens; rm -r "$g"
 run 0 "$work/list" "$g" "$work/out_" --update; is_file "$g/plain.png"
 TRACTRIX_ASSUME=hardware; export TRACTRIX_ASSUME
-run 1 "$work/list" "$g" "$work/out_"; says "only with --any-platform"
+run 1 "$work/list" "$g" "$work/out_"; says "only if --any-platform is given"
 run 0 "$work/list" "$g" "$work/out_" --update; is_file "$g/gpu/plain.png"
 run 0 "$work/list" "$g" "$work/out_"; says "golden: $g/gpu/plain.png (class)"
 unset TRACTRIX_ASSUME
@@ -104,8 +104,8 @@ for option in --any-platform "--level class --update" "--class-limits 2,1" "--co
     compare 2 $option; one_line; says "expected --platform NAME"
 done
 compare 2 --platform $platform --level class; one_line; says "expected --update"
-compare 2 --platform nvidia-h100-550 --level common --update; one_line; says "goldens for all platforms are not used for the GPU"
-for wrong in cpu ../x a/b .x 'A b'; do compare 2 --platform "$wrong"; one_line; says "expected what tractrix-render --platform prints"; done
-run 2 "$new/x_1.pfm" "$new/x_1.pfm" --platform $platform; one_line; says "is for folders"
+compare 2 --platform nvidia-h100-550 --level common --update; one_line; says "are not compared with goldens for all platforms"
+for wrong in cpu ../x a/b .x 'A b'; do compare 2 --platform "$wrong"; one_line; says "expected the output of tractrix-render --platform"; done
+run 2 "$new/x_1.pfm" "$new/x_1.pfm" --platform $platform; one_line; says "expected two folders"
 
 finish

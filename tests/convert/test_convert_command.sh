@@ -89,7 +89,7 @@ strand 4 numVerts 2 texcoord 0 0
 4 1 0
 END
 run 0 "$work/dirty.tfx" --unit m -o "$work/clean.tfx"
-says "dirty.tfx:9: 1 strand with a coordinate that is not finite"; says "dirty.tfx:10: 1 strand of fewer than two"
+says "dirty.tfx:9: 1 strand with a coordinate that is NaN, infinite or beyond 1000 km"; says "dirty.tfx:10: 1 strand of fewer than two"
 says "dirty.tfx:5: 1 vertex that coincides"; says "1 attribute value that is not a finite number"
 run 0 "$work/clean.tfx" --strict; says "strands   3 usable of 3"; silent err
 run 3 "$work/dirty.tfx" --strict -o "$work/none.tfx"; says "refused because of --strict"; one_line; none "$work/none.tfx"
@@ -115,7 +115,7 @@ mkfifo "$work/named"
 cat assets/fur.tfx >"$work/named" &
 run 0 "$work/named" -o "$work/named.tfx"; equal "$work/named.tfx" assets/fur.tfx
 wait
-run 3 /dev/zero; one_line; says "/dev/zero: a device"
+run 3 /dev/zero; one_line; says "/dev/zero: is a device"
 run 3 /dev/zero -o "$work/zero.tfx"; one_line; none "$work/zero.tfx"
 
 claim "cubic curves below transforms are read, and all their times"
@@ -174,12 +174,12 @@ run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"
 run 0 "$work/f_%02d.tfx" --unit m --first 3 -q -o "$work/g_%d.data"; equal "$work/g_3.data" "$work/h.data"
 run 0 "$work/f_%02d.tfx" --unit m -q -o "$work/anim.npz" --fps 24; run 0 "$work/anim.npz" -q -o "$work/anim2.usda"; run 0 "$work/f_%02d.tfx" --unit m -q -o "$work/anim3.usda" --fps 24; equal "$work/anim2.usda" "$work/anim3.usda"
 run 0 "$work/anim.npz" --first 2 --last 3 -q -o "$work/h_%d.data"; run 0 "$work/f_03.tfx" --unit m -q -o "$work/h.data"; equal "$work/h_3.data" "$work/h.data"; none "$work/h_1.data"
-run 3 "$work/anim.npz" --first 4 -o "$work/none.usda"; says "no frame 4: it has 0 to 3"; one_line; none "$work/none.usda"
+run 3 "$work/anim.npz" --first 4 -o "$work/none.usda"; says "no frame 4: the file has frames 0 to 3"; one_line; none "$work/none.usda"
 run 2 "$work/f_%02d.tfx" -o "$work/one.data"; says "one file name for 4 frames"; one_line; none "$work/one.data"
 run 3 "$work/f_%02d.tfx" --first 7; says "no file for frame 7"; one_line
 run 3 "$work/f_%02d.tfx" --last 4 -o "$work/none.usda"; says "f_04.tfx"; one_line; none "$work/none.usda"
 run 0 $curls --subsample 1% -q -o "$work/f_04.tfx"
-run 1 "$work/f_%02d.tfx" -o "$work/none.usda"; says "frame 4 has other strands than frame 0"; one_line; none "$work/none.usda"
+run 1 "$work/f_%02d.tfx" -o "$work/none.usda"; says "the strands of frame 4 differ from those of frame 0"; one_line; none "$work/none.usda"
 
 claim "a cache becomes a USD file with the points that tractrix-render writes"
 "$bin/tractrix-render" assets/curls.tfx assets/demo.tfx --frames 4 -q --cache "$work/a.cache" --export "$work/render.usda" || bad "tractrix-render fails"
@@ -192,7 +192,7 @@ run 3 "$work/a.cache" --last 9 -o "$work/none.usda"; says "no frame 9"; one_line
 head -c 300000 "$work/a.cache" >"$work/cut.cache"
 run 3 "$work/cut.cache" --last 3; says "no frame 3"; one_line
 head -c 40 "$work/a.cache" >"$work/cut.cache"; run 3 "$work/cut.cache"; one_line
-run 2 "$work/a.cache" $curls; says "can't be joined"; one_line
+run 2 "$work/a.cache" $curls; says "cannot be joined with other files"; one_line
 
 claim "frames that are cut off or missing are not lost in silence"
 head -c "$(($(wc -c <"$work/a.cache") * 3 / 4))" "$work/a.cache" >"$work/cut.cache"
@@ -231,7 +231,7 @@ done
 
 claim "what can't be written is status 1"
 run 1 $curls -o /proc/x.hair; one_line
-run 1 $curls $fur --format tfx4 -o "$work/none.tfx"; says "needs equal numbers"; one_line; none "$work/none.tfx"
+run 1 $curls $fur --format tfx4 -o "$work/none.tfx"; says "expected equal numbers in a binary TressFX file"; one_line; none "$work/none.tfx"
 
 claim "wrong usage is status 2 and one line"
 for words in "" "--nth 0 $curls --stats" "--nth 1.5 $curls --stats" "--subsample 0 $curls --stats" "--subsample 101% $curls --stats" \
@@ -259,8 +259,8 @@ in_file "$work/fitted.json" '"strands_inside": 0'; in_file "$work/fitted.json" '
 run 2 assets/bob.tfx --attach -o "$work/unfit.tfx"; says "--attach: expected --mesh FILE with it"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj -o "$work/unfit.tfx"; says "--mesh: has no effect"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj --push-out -1 -o "$work/unfit.tfx"; says "--push-out: got '-1', expected a distance"; one_line
-run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "a hair file is given without --mesh"; one_line
-run 3 assets/head.obj; says "not hair: expected hair; a mesh is given with --mesh"; one_line
+run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "expected a mesh (pass hair files without --mesh)"; one_line
+run 3 assets/head.obj; says "not hair: expected hair (pass a mesh with --mesh)"; one_line
 none "$work/unfit.tfx"
 
 claim "a mesh has the unit of the hair, also of several files and of numbered ones"
@@ -272,11 +272,11 @@ run 0 "$work/bob_0.tfx" "$work/bob_1.tfx" --mesh assets/head.obj --stats; says "
 claim "meshes of PLY and Alembic files are refused as hair"
 printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n-1 -1 -1\n1 -1 -1\n0 1 0\n0 -1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >"$work/mesh.ply"
 run 0 $curls --mesh "$work/mesh.ply" --mesh-unit m --stats; says "inside the mesh: "
-run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: expected hair; a mesh is given with --mesh"; one_line
+run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: expected hair (pass a mesh with --mesh)"; one_line
 sed 's/3 0 3 2/3 0 3 9/' "$work/mesh.ply" >"$work/bad.ply"
 run 3 $curls --mesh "$work/bad.ply" --stats; says "bad.ply:17: face 3 has corner 9: expected less than 4"; one_line
 run 0 $curls --mesh tests/data/body.abc --stats
-run 3 $curls --mesh tests/data/groom.abc --stats; says "hair, and no visible mesh"; one_line
+run 3 $curls --mesh tests/data/groom.abc --stats; says "hair and no visible mesh"; one_line
 
 claim "groups: of Alembic, of files that become one"
 run 0 tests/data/unreal.abc --unit cm --group 5 --stats; says "2 strands, "

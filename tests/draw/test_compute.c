@@ -330,12 +330,12 @@ static void what_lists_cannot_hold_is_refused(void **state)
     options.pool_bytes = 64;
     use(&options);
     assert_refuses("a row of tiles has");
-    assert_refuses("--raster blocks draws any number");
+    assert_refuses("or --raster blocks, which has no limit");
     use(&SMALL);
     uint8_t *expected = draw_copy(&size);
     int longest = stage_passes()->compute.longest;
     stage_passes()->compute.longest = 20; // per tile
-    assert_refuses("driver's loops can visit: --raster blocks draws any number");
+    assert_refuses("the limit of this driver's loops, or --raster blocks, which has no limit");
     stage_passes()->compute.longest = longest;
     assert_draws_the_same(expected, size);
     free(expected);

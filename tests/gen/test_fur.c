@@ -294,13 +294,14 @@ static void what_does_not_go_together_is_named(void **state)
     static const struct {
         const char *density, *length, *comb, *message;
     } cases[] = {
-        {"0", NULL, NULL, "--density is nowhere above 0 on mesh"},
-        {"1/0", NULL, NULL, "--density is inf at "},
+        {"0", NULL, NULL, "--density: nowhere above 0 on mesh"},
+        {"1/0", NULL, NULL, "--density: inf at "},
         {"x +", NULL, NULL, "--density: got 'x +', expected a formula of x, y, z, nx, "},
         {"none.png", NULL, NULL, "--density: none.png: "},
-        {NULL, "0", NULL, "--length-map leaves no hair on mesh"},
-        {NULL, "0/0", NULL, "--length-map is not a number at "},
-        {NULL, NULL, "1,2", "--comb: expected X,Y,Z, each a number or a formula, or a .png, got "},
+        {NULL, "0", NULL, "--length-map: leaves no hair on mesh"},
+        {NULL, "0/0", NULL, "--length-map: not a number at "},
+        {NULL, NULL, "1,2",
+         "--comb: got '1,2', expected X,Y,Z, each a number or a formula, or a .png file"},
         {NULL, NULL, "1,2,t", "--comb: got 't', expected a formula of x, y, z"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -23,7 +23,7 @@ refused 2 "--kind: got 'crls', expected random, straight, curls or fur (nearest:
 refused 2 "--knid: no such option: did you mean '--kind'?" --knid curls
 refused 2 "--count: got '0', expected a whole number from 1 to 10000000" --count 0
 refused 2 "--curl-radius: has no effect: --kind is fur" --kind fur --curl-radius 0.01
-refused 2 "--set 1k16 and --count exclude each other" --set 1k16 --count 5
+refused 2 "--set 1k16 and --count: expected only one of them" --set 1k16 --count 5
 refused 2 "x: got a file, expected only options" x
 run 2; says "no output: expected -o FILE"
 
@@ -63,8 +63,8 @@ run 0 --count 5 --vertices 4 --format text -o "$work/text.hair"; says "TressFX 2
 claim "followers and thickness go where the format holds them"
 run 0 fur assets/ball.obj -n 9 --followers 16 --format tfx3 -o "$work/f.tfx"
 run 0 fur assets/ball.obj -n 9 --thickness 1e-4 --tip-thickness 0.1 --format hair -o "$work/f.hair"
-refused 2 "--followers: expected --format usda, abc, tfx3, text or npz" fur assets/ball.obj --followers 3
-refused 2 "--thickness: expected --format usda, abc, hair, ply, ply-text or npz" fur assets/ball.obj --thickness 1e-4
+refused 2 "--followers: the format of the output cannot store it: expected --format usda, abc, tfx3, text or npz" fur assets/ball.obj --followers 3
+refused 2 "--thickness: the format of the output cannot store it: expected --format usda, abc, hair, ply, ply-text or npz" fur assets/ball.obj --thickness 1e-4
 
 claim "the unit and the axis of the mesh count"
 printf 'v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n' >"$work/flat.obj"
@@ -80,14 +80,14 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >"$work/part.obj"
 refused 3 "line.obj: no triangle has an area" fur "$work/line.obj"
 refused 3 "empty.obj:2: no faces" fur "$work/empty.obj"
 refused 3 "none.obj" fur "$work/none.obj"
-refused 2 "an image needs texture coordinates, which the mesh lacks" fur "$work/part.obj" --density "$work/none.png"
+refused 2 "an image is placed by texture coordinates, which the mesh lacks" fur "$work/part.obj" --density "$work/none.png"
 refused 3 "--density: " fur assets/ball.obj --density "$work/none.png"
-refused 2 "--density is nowhere above 0" fur assets/ball.obj --density 0
-refused 2 "--comb: expected X,Y,Z" fur assets/ball.obj --comb 1,2
+refused 2 "--density: nowhere above 0" fur assets/ball.obj --density 0
+refused 2 "--comb: got '1,2', expected X,Y,Z" fur assets/ball.obj --comb 1,2
 refused 2 "fur: got 0 files, expected one mesh" fur
 refused 2 "fur: got 2 files, expected one mesh" fur assets/ball.obj assets/head.obj
-refused 2 "need" fur assets/ball.obj --curl-radius 0.01 --length 1
-refused 2 "--clump needs --guides or --clumps" fur assets/ball.obj --clump 0.5
+refused 2 "--vertices: got 16, expected at least 161: 4 for each of the 40 turns of curls over 1 m" fur assets/ball.obj --curl-radius 0.01 --length 1
+refused 2 "--clump and --clump-root: have no effect: expected --guides or --clumps" fur assets/ball.obj --clump 0.5
 refused 3 "$work/none.obj: " fur "$work/none.obj"
 "$program" fur --help >/dev/full 2>"$work/err"
 if [ $? = 1 ]; then good; else bad "status with a full disk"; fi

@@ -444,7 +444,7 @@ static void what_is_not_a_colour_is_refused(void **state)
     ((float *)(void *)image.pixels)[100] = INFINITY;
     const ExrFile infinite = {.image = &image};
     assert_int_equal(exr_file_encode(&infinite, &file, NULL), RESULT_OK);
-    assert_refused(&file, "not finite");
+    assert_refused(&file, "has infinite numbers or NaN");
     bytes_destroy(&file);
     image_destroy(&image);
 }

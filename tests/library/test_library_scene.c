@@ -203,7 +203,7 @@ static void refuses_wrong_arrays(void **state)
     WELL(tractrix_scene_create(&scene, NULL, &library_error));
     position[7][1] = NAN;
     library_refused(tractrix_scene_add_strands(scene, "mine", &strands, &library_error),
-                    TRACTRIX_BAD_INPUT, "mine: strand 1: vertex 3 is not finite");
+                    TRACTRIX_BAD_INPUT, "mine: strand 1: a coordinate of vertex 3 is NaN");
     make_strands(position);
     memcpy(position[10], position[9], sizeof position[9]);
     library_refused(tractrix_scene_add_strands(scene, NULL, &strands, &library_error),

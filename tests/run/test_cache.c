@@ -195,7 +195,7 @@ static void another_scene_is_refused_by_the_value_that_differs(void **state)
     assert_int_equal(
         cache_reader_open(&reader, recorded.path, &fixture.simulation, &fixture.strands, &error),
         RESULT_BAD_INPUT);
-    assert_non_null(strstr(error.text, "sections[0].style 0.5, this scene has 0.25"));
+    assert_non_null(strstr(error.text, "sections[0].style 0.5, but this scene has 0.25"));
     fixture.scene.sections[0].params.style = 0.5f;
     fixture.scene.sections[0].params.opacity = 0.9f; // looks do not matter
     fixture.scene.run.frames = 3;
@@ -204,7 +204,7 @@ static void another_scene_is_refused_by_the_value_that_differs(void **state)
     assert_int_equal(
         cache_reader_open(&reader, recorded.path, &fixture.simulation, &fixture.strands, &error),
         RESULT_BAD_INPUT);
-    assert_non_null(strstr(error.text, "other hair than curls"));
+    assert_non_null(strstr(error.text, "hair that differs from curls"));
     simulation_fixture_destroy(&fixture);
 }
 

@@ -326,7 +326,7 @@ claim "keys of a color are refused on hair that is painted once"
 "$bin/tractrix-gen" --kind straight --count 20 --vertices 8 -q -o "$work/few.tfx"
 printf '{"sections": [{"file": "few.tfx", "tip_length": 0.5, "color": {"keys": [{"time": 0, "value": "#ff0000"}, {"time": 1, "value": "#00ff00"}]}}]}' >"$work/keys.json"
 run 2 "$work/keys.json" --look plain --algo none --frames 1 --size 32x24 -q -o "$work/keys.png"; one_line
-says "few.tfx: color: it cannot change over time with tips of another color: expected one value, or --tip-length 0"
+says "few.tfx: color: cannot change over time, because the hair has tips of another color: expected one value, or --tip-length 0"
 run 0 "$work/keys.json" --look plain --algo none --frames 1 --size 32x24 -q --tip-length 0 -o "$work/keys.png"
 
 claim "exported hair has the color that it shows"

@@ -271,6 +271,8 @@ static void one_name_is_one_frame(void **state)
         {"a.tfx -o x.png --cache y.cache", 0, -1, 120}, // the cache holds all frames
         {"a.tfx -o x.png --contact-sheet 3x2", 0, -1, 120},
         {"a.tfx -o x_%d.png", 0, -1, 120},
+        {"a.tfx -o 50%%.png", 0, 0, 120}, // %% stands for a percent sign
+        {"a.tfx -o 50%%_%d.png", 0, -1, 120},
         {"a.tfx -o x.mp4", 0, -1, 120},
     };
     for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {

@@ -107,7 +107,7 @@ static void hair_larger_than_a_buffer_is_split_never_cut(void **state)
     Error error;
     limits.storage_block = HAIR_MOST_SCRATCH * 16 * 16; // less than that
     assert_int_equal(hair_create(&hair, &strands, 0, &limits, &error), RESULT_FAILED);
-    assert_non_null(strstr(error.text, "exceeds this driver's buffers"));
+    assert_non_null(strstr(error.text, "exceeds the limit of this driver's buffers"));
     strands_destroy(&strands);
 }
 

@@ -280,8 +280,8 @@ static void what_is_no_groom_says_what_it_is(void **state)
     (void)state;
     Bytes bytes = read_file("tests/data/curves.abc"), mesh = read_file("tests/data/body.abc");
     bytes.data[5] = 0;
-    refuse(bytes.data, bytes.size, "the file was not closed");
-    refuse(mesh.data, mesh.size, "meshes without hair: expected hair; a mesh is given with --mesh");
+    refuse(bytes.data, bytes.size, "did not finish it");
+    refuse(mesh.data, mesh.size, "meshes without hair: expected hair (pass a mesh with --mesh)");
     // A group with more parts than the file has bytes.
     bytes.data[5] = 0xff;
     uint64_t root;
@@ -299,9 +299,9 @@ static void attributes_of_other_counts_than_the_strands_are_refused(void **state
     Bytes bytes = read_file("tests/data/unreal.abc");
     assert_int_equal(bytes.data[700], 24);
     bytes.data[700] = 20;
-    refuse(bytes.data, bytes.size, "groom_guide: 2 numbers for 4 curves");
+    refuse(bytes.data, bytes.size, "groom_guide: 2 numbers: expected 4, one for each curve");
     bytes.data[700] = 16;
-    refuse(bytes.data, bytes.size, "groom_guide: 0 numbers for 4 curves");
+    refuse(bytes.data, bytes.size, "groom_guide: 0 numbers: expected 4, one for each curve");
     bytes_destroy(&bytes);
 }
 

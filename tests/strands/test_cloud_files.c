@@ -211,22 +211,23 @@ static void malformed_ply_is_refused(void **state)
         {"ply\nformat binary 1.0\n", "FILE:2: expected ascii, binary_little_endian"},
         {PLY("element vertex 3\nproperty floot x\n"), "FILE:4: expected a type"},
         {PLY("element vertex -1\n"), "FILE:3: expected a number of elements"},
-        {PLY("property float x\n"), "before any element"},
+        {PLY("property float x\n"), "before the first element"},
         {PLY("element vertex 1\nproperty float x\nend_header\n0\n"), "without x, y and z"},
         {PLY("element v 1\nproperty float x\nend_header\n0\n"), "no vertices"},
-        {PLY("element vertex 4000000000\n" XYZ "end_header\n0 0 0\n"), "need 24000000000 bytes"},
+        {PLY("element vertex 4000000000\n" XYZ "end_header\n0 0 0\n"),
+         "need at least 24000000000 bytes"},
         {PLY("element vertex 2\n" XYZ "end_header\n0 0 0\n0 x 0\n"), "FILE:9: expected a number"},
         {PLY("element vertex 2\n" XYZ "element face 1\nproperty list uchar int i\nend_header\n"),
-         "a mesh of 1 faces, not hair: expected hair; a mesh is given with --mesh"},
+         "a mesh of 1 faces, not hair: expected hair (pass a mesh with --mesh)"},
         {PLY("element vertex 2\n" XYZ "element edge 1\nproperty int vertex1\nproperty int vertex2\n"
              "end_header\n0 0 0\n0 1 0\n0 2\n"),
-         "edge 0 joins vertices 0 and 2: expected consecutive ones"},
+         "edge 0 joins vertices 0 and 2: expected two consecutive vertices"},
         {PLY("element vertex 2\n" XYZ "element strand 1\nproperty ushort nsegs\nend_header\n"
              "0 0 0\n0 1 0\n2\n"),
-         "the strands need 3 vertices or more, the file has 2"},
+         "the strands need at least 3 vertices, but the file has 2"},
         {PLY("element vertex 3\n" XYZ "element strand 1\nproperty ushort nsegs\nend_header\n"
              "0 0 0\n0 1 0\n0 2 0\n1\n"),
-         "the strands need 2 vertices in all, the file has 3"},
+         "the strands need 2 vertices in all, but the file has 3"},
         {PLY("element vertex 1\nproperty list float int i\n"), "a list's count is a float"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
@@ -343,7 +344,7 @@ static void other_npy_is_refused(void **state)
     static const struct {
         const char *dict, *says;
     } cases[] = {
-        {"{'descr': '|O', 'fortran_order': False, 'shape': (2, 2, 3), }", "pickled objects"},
+        {"{'descr': '|O', 'fortran_order': False, 'shape': (2, 2, 3), }", "pickled Python objects"},
         {"{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2,), }", "(several fields)"},
         {"{'descr': '<c8', 'fortran_order': False, 'shape': (2, 2, 3), }", "type '<c8'"},
         {"{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2, 3), }", "need 12 times 4"},
@@ -366,7 +367,7 @@ static void other_npy_is_refused(void **state)
     refuse(pile.data, pile.size, &METRES, "version 4.0 of .npy");
     pile = make_npy(1, "{'descr': '<i4', 'fortran_order': False, 'shape': (1, 2, 3), }");
     for (int i = 0; i < 6; i++) pile_number(&pile, (uint64_t)i, 4, false);
-    refuse(pile.data, pile.size, &METRES, "other elements of shape (1, 2, 3)");
+    refuse(pile.data, pile.size, &METRES, "elements that are not floats with the shape (1, 2, 3)");
 }
 
 // --- .npz as other programs write it: deflated, with data descriptors after the data, and zip64.
@@ -547,8 +548,8 @@ static void npz_that_lies_is_refused(void **state)
         uint64_t claimed;
     } cases[] = {
         {"positions.npy", "(2, 2, 3)", "unpacks to 1099511627776 bytes", 12, 1ull << 40},
-        {"positions.npy", "(2, 2, 3)", "does not unpack to the 10 bytes", 12, 10},
-        {"x.npy", "(2, 2)", "no array of floats of shape (strands, points, 3)", 4, 0},
+        {"positions.npy", "(2, 2, 3)", "does not unpack to 10 bytes", 12, 10},
+        {"x.npy", "(2, 2)", "no array of floats with the shape (strands, points, 3)", 4, 0},
         {"positions.npy", "(2, 2, 3)", "FILE: positions.npy: byte", 3, 0},
         {"points.npy", "(3, 3)", "where its strands end (3 points): expected --points-per-strand",
          9, 0},
@@ -570,7 +571,7 @@ static void npz_that_lies_is_refused(void **state)
     refuse(archive.pile.data, archive.pile.size, &(StrandsReadOptions){.array = "nix"},
            "no array 'nix'");
     refuse(archive.pile.data, archive.pile.size, &(StrandsReadOptions){.array = "uv"},
-           "(3, 2): expected floats of shape (strands, points, 3)");
+           "(3, 2): expected floats with the shape (strands, points, 3)");
 }
 
 // --- Files without hair.

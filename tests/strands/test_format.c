@@ -328,7 +328,7 @@ static void other_kinds_can_only_be_read(void **state)
     Error error;
     const char *path = temporary_path(state, "x");
     assert_int_equal(format_write(path, FORMAT_SALON_BIN, &strands, &error), RESULT_FAILED);
-    assert_non_null(strstr(error.text, "can only be read"));
+    assert_non_null(strstr(error.text, "can be read but not written"));
     assert_int_equal(temporary_count_files(((Temporary *)*state)->folder), 0);
     strands_destroy(&strands);
 }

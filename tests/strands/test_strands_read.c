@@ -166,13 +166,13 @@ static void malformed_text_is_refused_with_its_line(void **state)
         {"numStrands 99999999999\n", "FILE:1: expected the number of strands, got '99999999999'"},
         {"numStrands 0\nis sorted 1\n", "FILE:1: numStrands 0: expected at least 1"},
         {"numStrands 4294967295\nis sorted 1\n" STRAND,
-         "FILE:1: numStrands 4294967295: the file has room for at most 3"},
+         "FILE:1: numStrands 4294967295: expected at most 3, the number that fits into the file"},
         {"numStrands 1\n" STRAND, "FILE:2: expected 'is sorted', got 'strand'"},
         {"numStrands 1\nis sorted 2\n" STRAND, "FILE:2: expected 0 or 1 for is sorted, got '2'"},
         {"numStrands 1\nis sorted 1 1\n" STRAND, "FILE:2: expected the end of the line, got '1'"},
         {"numStrands 1\nis sorted 1\nhair 0 numVerts 2\n", "FILE:3: expected strand, got 'hair'"},
         {"numStrands 1\nis sorted 1\nstrand 0 numVerts 4294967295\n0 0 0\n",
-         "FILE:3: numVerts 4294967295: the file has room for at most 1"},
+         "FILE:3: numVerts 4294967295: expected at most 1, the number that fits into the file"},
         {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n0 y 0\n",
          "FILE:5: expected a vertex's y, got 'y'"},
         {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0\n0 1 0\n",
@@ -183,9 +183,10 @@ static void malformed_text_is_refused_with_its_line(void **state)
          "FILE:5: expected the end of the line, got '7'"},
         {"numStrands 1\nis sorted 1\nstrand 0 numVerts 2\n0 0 0\n            \n",
          "FILE:6: expected a vertex's x, got the end of the file"},
-        {"numStrands 2\nis sorted 1\n" STRAND, "FILE:6: the file ends after 1 of 2 strands"},
+        {"numStrands 2\nis sorted 1\n" STRAND,
+         "FILE:6: 1 strands in the file: expected 2, the number in its header"},
         {"numStrands 1\nis sorted 1\n" STRAND STRAND,
-         "FILE:6: expected the end of the file behind the last strand, got 'strand'"},
+         "FILE:6: expected the end of the file after the last strand, got 'strand'"},
         {"version 2.0\nscale 0\n", "FILE:2: scale 0: expected another number than 0"},
         {"version 2.0\ncolour 1\n", "FILE:2: expected is, got 'colour'"},
         {"scale 1.#INF\n", "FILE:1: expected the scale, got '1.#INF'"},
@@ -247,10 +248,11 @@ static void each_kind_of_mending_is_reported_in_one_line(void **state)
     assert_int_equal(strands_report_print_mended(&report, "FILE", stream), 4);
     fclose(stream);
     assert_string_equal(
-        text, "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km: dropped\n"
-              "FILE:10: first of 2 strands of fewer than two distinct vertices: dropped\n"
-              "FILE:5: first of 2 vertices that coincide with the one before them: merged\n"
-              "FILE:15: 1 attribute value that is not a finite number: replaced\n");
+        text,
+        "FILE:9: 1 strand with a coordinate that is NaN, infinite or beyond 1000 km: dropped\n"
+        "FILE:10: first of 2 strands of fewer than two distinct vertices: dropped\n"
+        "FILE:5: first of 2 vertices that coincide with the one before them: merged\n"
+        "FILE:15: 1 attribute value that is not a finite number: replaced\n");
     free(text);
 }
 
@@ -262,9 +264,9 @@ static void strict_refuses_what_would_be_mended(void **state)
     Strands strands;
     Error error = {""};
     assert_int_equal(reading_text(&strands, DIRTY, &strict, &report, &error), RESULT_BAD_INPUT);
-    assert_string_equal(error.text,
-                        "FILE:9: 1 strand with a coordinate that is not finite or beyond 1000 km "
-                        "(refused because of --strict)");
+    assert_string_equal(
+        error.text, "FILE:9: 1 strand with a coordinate that is NaN, infinite or beyond 1000 km "
+                    "(refused because of --strict)");
     assert_false(strands_report_is_clean(&report));
     assert_int_equal(
         reading_text(&strands, "numStrands 1\nis sorted 1\n" STRAND, &strict, &report, &error),
@@ -491,7 +493,7 @@ static void strands_beyond_the_longest_are_refused(void **state)
     Strands strands;
     Error error;
     assert_int_equal(reading_text(&strands, text, &METRES, NULL, &error), RESULT_BAD_INPUT);
-    assert_string_equal(error.text, "FILE:3: strand 0 has 65536 vertices, at most 65535 work");
+    assert_string_equal(error.text, "FILE:3: strand 0 has 65536 vertices: expected at most 65535");
     free(text);
 }
 

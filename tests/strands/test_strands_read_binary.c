@@ -134,15 +134,16 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
         {FORMAT_TFX4, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
         {FORMAT_TFX4, 8, 0, "FILE: byte 8: 0 vertices per strand: expected at least 2"},
         {FORMAT_TFX4, 4, 0xffffffff,
-         "FILE: byte 12: positions need 17179869180 times 16 bytes from byte 160 on, the file has "
-         "516"},
+         "FILE: byte 12: positions need 17179869180 times 16 bytes from byte 160 on, but the file "
+         "has only 516 there"},
         {FORMAT_TFX4, 12, 0, "FILE: byte 12: the file has no positions"},
         {FORMAT_TFX4, 12, 4000,
-         "FILE: byte 12: positions start at byte 4000, the file ends at byte 676"},
+         "FILE: byte 12: positions start at byte 4000, but the file ends at byte 676"},
         {FORMAT_TFX4, 16, 12,
          "FILE: byte 16: strand UVs start at byte 12, within the header of 160 bytes"},
         {FORMAT_TFX4, 28, 600,
-         "FILE: byte 28: colours need 12 times 16 bytes from byte 600 on, the file has 76"},
+         "FILE: byte 28: colours need 12 times 16 bytes from byte 600 on, but the file has only 76 "
+         "there"},
         {FORMAT_TFX3, 148, 295,
          "FILE: byte 148: thicknesses start at byte 295, within the header of 296 bytes"},
         {FORMAT_TFX4, 16, 159,
@@ -152,7 +153,8 @@ static void malformed_binaries_are_refused_with_their_byte(void **state)
         {FORMAT_HAIR, 4, 0, "FILE: byte 4: 0 strands: expected at least 1"},
         {FORMAT_HAIR, 12, 1, "FILE: byte 12: the file has no points"},
         {FORMAT_HAIR, 8, 1000000,
-         "FILE: byte 128: points need 1000000 times 12 bytes from byte 128 on, the file has 384"},
+         "FILE: byte 128: points need 1000000 times 12 bytes from byte 128 on, but the file has "
+         "only 384 there"},
         {FORMAT_HAIR, 16, 2,
          "FILE: byte 16: 3 strands of 2 segments each have 9 points, the header says 12"},
     };

@@ -4,6 +4,7 @@
 // and of Unreal's groom schema (groom_...). Unreal's guides are left out if the file has other
 // strands.
 #include "base/alembic.h"
+#include "base/foreign.h"
 #include "strands/formats/abc_write.h"
 #include "strands/formats/basis_curves.h"
 #include "strands/formats/format.h"
@@ -116,11 +117,10 @@ static void read_kind(Abc *abc, AbcCurves *set)
     free(byte);
     if (!reader_ok(reader)) return;
     if (type > 1 || wrap || (type == 0 && (basis == 0 || basis > 3))) {
-        reader_fail(
-            reader,
-            "%s: closed curves, or curves of type %u and basis %u: expected linear, Bezier, "
-            "B-spline or Catmull-Rom curves with ends",
-            path, type, basis);
+        reader_fail(reader,
+                    "%s: closed curves, or curves of type %u and basis %u: expected open curves: "
+                    "linear, Bezier, B-spline or Catmull-Rom",
+                    path, type, basis);
         return;
     }
     strcpy(set->curves.type, TYPES[type]);
@@ -163,9 +163,10 @@ static void read_curves(Abc *abc, AbcCurves *set)
     if (!position || !sizes || position->extent != 3 || !position->samples || !sizes->samples)
         reader_fail(reader, "%s: no positions: expected P and nVertices", object->path);
     else if (sizes->last)
-        reader_fail(reader,
-                    "%s: curves whose numbers of points change: expected the same in all samples",
-                    object->path);
+        reader_fail(
+            reader,
+            "%s: the curves' numbers of points change: expected the same numbers in all samples",
+            object->path);
     if (!reader_ok(reader)) return;
     read_array(abc, &set->own, "nVertices", CURVES_COUNTS, set);
     read_kind(abc, set);
@@ -347,7 +348,8 @@ static double unite_widths(const Abc *abc, Strands *sets, double time)
 static void check_guides(Reader *reader, const AbcCurves *set, uint32_t strands)
 {
     if (set->guide && set->guide_count != 1 && set->guide_count != strands)
-        reader_fail(reader, "groom_guide: %zu numbers for %u curves", set->guide_count, strands);
+        reader_fail(reader, "groom_guide: %zu numbers: expected %u, one for each curve",
+                    set->guide_count, strands);
 }
 
 static Result make_strands(Abc *abc, FormatSource *source, Strands *sets)
@@ -401,10 +403,9 @@ static Result read(FormatSource *source, Reader *reader)
     if (alembic_open(&abc.alembic, reader) == RESULT_OK) read_all(&abc);
     if (reader_ok(reader) && abc.count == 0) {
         reader->at = 0;
-        reader_fail(reader, abc.hidden ? "all curves are hidden"
-                            : abc.meshes
-                                ? "meshes without hair: expected hair; a mesh is given with --mesh"
-                                : "no curves: expected hair");
+        reader_fail(reader, abc.hidden   ? "all curves are hidden: expected visible curves"
+                            : abc.meshes ? "meshes without hair: " FOREIGN_WANTS_HAIR
+                                         : "no curves: expected hair");
     }
     if (reader_ok(reader)) sets = calloc((size_t)abc.count + 1, sizeof *sets);
     if (reader_ok(reader) && !sets) reader_fail_memory(reader);

@@ -114,8 +114,8 @@ static void stand_at(Reader *reader, uint32_t line)
 static void fail_count(Reader *reader, const BasisCurves *curves, int array)
 {
     stand_at(reader, curves->array[array].line);
-    reader_fail(reader, "%s: %zu numbers do not fit these curves", curves->names[array],
-                curves->array[array].count);
+    reader_fail(reader, "%s: %zu numbers, which do not fit the number of curves or points",
+                curves->names[array], curves->array[array].count);
 }
 
 typedef enum Rate { RATE_CONSTANT, RATE_UNIFORM, RATE_VARYING, RATE_VERTEX, RATES } Rate;
@@ -282,8 +282,9 @@ static void expand(Reader *reader, BasisCurves *curves, int array)
         float index = indices->value[i];
         if (!(index >= 0 && index < (float)count && index == floorf(index))) {
             stand_at(reader, indices->line);
-            reader_fail(reader, "%s:indices: %g of %zu values", curves->names[array], (double)index,
-                        count);
+            reader_fail(reader,
+                        "%s:indices: %g: expected a whole number below %zu, the number of values",
+                        curves->names[array], (double)index, count);
             break;
         }
         memcpy(all + i * width, values->value + (size_t)index * width, width * sizeof *all);
@@ -310,7 +311,7 @@ static void check_kind(Reader *reader, const BasisCurves *curves)
         reader_fail(reader, "curves of basis %.40s: expected bezier, bspline or catmullRom",
                     curves->basis);
     if (strcmp(curves->wrap, "periodic") == 0)
-        reader_fail(reader, "periodic curves: strands have ends");
+        reader_fail(reader, "periodic curves: expected curves with ends");
 }
 
 // Checks the number of points of each curve and returns how many vertices the curves make.
@@ -320,8 +321,10 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
     uint64_t points = curves->points.sample[0].count / 3, used = 0, vertices = 0;
     stand_at(reader, curves->points.sample[0].line);
     if (curves->points.sample[0].count % 3)
-        reader_fail(reader, "points: %zu numbers do not fit these curves",
-                    curves->points.sample[0].count);
+        reader_fail(
+            reader,
+            "points: %zu numbers, which do not fit the curves: expected three for each point",
+            curves->points.sample[0].count);
     for (size_t s = 0; s < counts->count && reader_ok(reader); ++s) {
         float size = counts->value[s];
         if (!(size >= 0 && size <= (float)points && size == floorf(size))) {
@@ -331,18 +334,23 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
         uint32_t count = (uint32_t)size;
         stand_at(reader, counts->line);
         if (basis_of(curves) != BASIS_LINEAR && !count_segments(curves, count))
-            reader_fail(reader, "a cubic curve of %u points", count);
+            reader_fail(
+                reader,
+                "a cubic curve of %u points: expected a number of points that makes whole segments",
+                count);
         used += count;
         vertices += count_vertices(curves, count, per_strand);
     }
     for (size_t i = 0; i < curves->points.count && reader_ok(reader); ++i) {
         stand_at(reader, curves->points.sample[i].line);
         if (curves->points.sample[i].count != 3 * used)
-            reader_fail(reader, "points: %zu numbers do not fit these curves",
-                        curves->points.sample[i].count);
+            reader_fail(
+                reader,
+                "points: %zu numbers, which do not fit the curves: expected three for each point",
+                curves->points.sample[i].count);
     }
     if (reader_ok(reader) && vertices >= UINT32_MAX)
-        reader_fail(reader, "more points than 32-bit indices hold");
+        reader_fail(reader, "too many points: expected fewer than 2^32");
     return vertices;
 }
 

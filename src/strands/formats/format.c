@@ -80,7 +80,10 @@ Result format_write(const char *path, FormatKind kind, const Strands *strands, E
     if (strands->strand_count == 0)
         return error_set(error, RESULT_FAILED, "%s: no strands to write", path);
     if (!format->write)
-        return error_set(error, RESULT_FAILED, "%s: %s can only be read", path, format->name);
+        return error_set(
+            error, RESULT_FAILED,
+            "%s: the format %s can be read but not written: expected another suffix or --format",
+            path, format->name);
     if (!format->text) TRY(outfile_refuse_terminal(path, error));
     OutFile file;
     TRY(outfile_open(&file, path, error));
@@ -148,7 +151,7 @@ Result format_source_create(FormatSource *source, Reader *reader, uint32_t stran
                              .used_array = before.used_array};
     memcpy(source->note, before.note, sizeof source->note);
     if (vertex_count >= UINT32_MAX)
-        return reader_fail(reader, "%llu vertices are more than 32-bit indices hold",
+        return reader_fail(reader, "%llu vertices: expected fewer than 2^32",
                            (unsigned long long)vertex_count);
     Result result = strands_create(&source->strands, strand_count, (uint32_t)vertex_count, NULL);
     source->place = calloc((size_t)strand_count + 1, sizeof *source->place);

@@ -224,8 +224,8 @@ static Result write(OutFile *file, const Strands *strands, Error *error)
         uneven = uneven || strands_size(strands, s) != strands_size(strands, 0);
         if (strands_size(strands, s) - 1 > UINT16_MAX)
             return error_set(error, RESULT_FAILED,
-                             "%s: strand %u has %u vertices, HAIR takes 65536", file->path, s,
-                             strands_size(strands, s));
+                             "%s: strand %u has %u vertices: .hair files hold at most 65536",
+                             file->path, s, strands_size(strands, s));
     }
     put_hair_header(stream, strands, transparent, uneven);
     for (uint32_t s = 0; uneven && s < strands->strand_count; s++) {

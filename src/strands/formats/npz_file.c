@@ -37,9 +37,10 @@ static Result refuse_shape(Reader *reader, const NpyArray *array)
 {
     char text[200];
     npy_array_describe(array, text, sizeof text);
-    return reader_fail(reader,
-                       "an array of %s of shape %s: expected floats of shape (strands, points, 3)",
-                       array->kind == 'f' ? "floats" : "other elements", text);
+    return reader_fail(
+        reader,
+        "an array of %s with the shape %s: expected floats with the shape (strands, points, 3)",
+        array->kind == 'f' ? "floats" : "elements that are not floats", text);
 }
 
 // Creates the source with these positions. `sizes`: [strands], or NULL. If neither `sizes` nor the
@@ -49,7 +50,7 @@ static Result make_source(FormatSource *source, Reader *reader, const NpyArray *
                           Layout layout, const uint32_t *sizes, uint64_t place, uint32_t stride)
 {
     if (layout.vertices >= UINT32_MAX || layout.strands >= UINT32_MAX)
-        return reader_fail(reader, "more points than 32-bit indices hold");
+        return reader_fail(reader, "too many points: expected fewer than 2^32");
     float(*positions)[3] = malloc((size_t)layout.vertices * sizeof *positions);
     if (!positions) return reader_fail_memory(reader);
     npy_array_copy(array, positions[0]);
@@ -250,7 +251,8 @@ static int find_positions(Npz *npz, Held *held)
         npz->used[i] = false;
         drop(npz, held);
     }
-    reader_fail(npz->reader, "no array of floats of shape (strands, points, 3)");
+    reader_fail(npz->reader,
+                "no array of floats with the shape (strands, points, 3): expected one, or --array");
     return -1;
 }
 
@@ -514,10 +516,11 @@ static Result write_npy(OutFile *file, const Strands *strands, Error *error)
     uint32_t size = strands_size(strands, 0);
     for (uint32_t s = 1; s < strands->strand_count; s++)
         if (strands_size(strands, s) != size)
-            return error_set(error, RESULT_FAILED,
-                             "%s: strand %u has %u vertices, strand 0 has %u; .npy needs equal "
-                             "numbers (--resample N), .npz does not",
-                             file->path, s, strands_size(strands, s), size);
+            return error_set(
+                error, RESULT_FAILED,
+                "%s: strand %u has %u vertices, strand 0 has %u: expected equal numbers in a .npy "
+                "file (--resample N makes them equal), or a .npz file",
+                file->path, s, strands_size(strands, s), size);
     const uint64_t shape[] = {strands->strand_count, size, 3};
     size_t head = npy_array_header(header, "<f4", shape, 3);
     fwrite(header, 1, head, file->stream);

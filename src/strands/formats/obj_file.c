@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Wavefront OBJ with lines: `v` statements are vertices, each `l` statement is a strand from root
 // to tip.
+#include "base/foreign.h"
 #include "strands/formats/format.h"
 
 #include "mesh/obj.h"
@@ -100,10 +101,10 @@ static Result make_room(Obj *obj)
 {
     Reader *reader = obj->reader;
     if (obj->lines == 0)
-        return reader_fail(reader, "a Wavefront file without lines (l), not hair: expected hair; a "
-                                   "mesh is given with --mesh");
+        return reader_fail(reader,
+                           "a Wavefront file without lines (l), not hair: " FOREIGN_WANTS_HAIR);
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
-        return reader_fail(reader, "more vertices or lines than 32-bit indices hold");
+        return reader_fail(reader, "too many vertices or lines: expected fewer than 2^32");
     TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));
     obj->position = malloc(obj->vertices * sizeof *obj->position + 1);
     obj->line = malloc(obj->vertices * sizeof *obj->line + 1);

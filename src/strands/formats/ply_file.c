@@ -3,6 +3,7 @@
 // number of each strand's segments (nsegs); points that edges join; and bare lists of points
 // (cloud.h). Follows the files of hapPLY and hairutil. Integer colours are sRGB, float colours
 // linear. Elements and properties with other names are skipped.
+#include "base/foreign.h"
 #include "base/ply.h"
 #include "image/image.h"
 #include "strands/formats/cloud.h"
@@ -113,7 +114,8 @@ static void read_strands(Ply *ply, const PlyElement *element)
         double values[PLY_ROLES] = {0};
         ply_read_row(&ply->file, element, values);
         if (!(values[PLY_SEGMENTS] >= 0 && values[PLY_SEGMENTS] < UINT32_MAX))
-            reader_fail(reader, "strand %u has %g segments", s, values[PLY_SEGMENTS]);
+            reader_fail(reader, "strand %u has %g segments: expected a whole number from 0", s,
+                        values[PLY_SEGMENTS]);
         ply->sizes[s] = reader_ok(reader) ? (uint32_t)values[PLY_SEGMENTS] + 1 : 0;
     }
 }
@@ -121,7 +123,7 @@ static void read_strands(Ply *ply, const PlyElement *element)
 static void read_edges(Ply *ply, const PlyElement *element)
 {
     Reader *reader = ply->reader;
-    if (!ply->vertices) reader_fail(reader, "edges before vertices");
+    if (!ply->vertices) reader_fail(reader, "edges before vertices: expected vertices first");
     if (!reader_ok(reader) || !ply_check_count(&ply->file, element)) return;
     ply->edges = element;
     for (uint32_t e = 0; e < element->count && reader_ok(reader); e++) {
@@ -130,10 +132,10 @@ static void read_edges(Ply *ply, const PlyElement *element)
         double a = fmin(values[PLY_VERTEX1], values[PLY_VERTEX2]);
         double b = fmax(values[PLY_VERTEX1], values[PLY_VERTEX2]);
         if (!(a >= 0 && b <= last && b == a + 1))
-            reader_fail(
-                reader,
-                "edge %u joins vertices %.0f and %.0f: expected consecutive ones of the file's %u",
-                e, values[PLY_VERTEX1], values[PLY_VERTEX2], ply->vertices->count);
+            reader_fail(reader,
+                        "edge %u joins vertices %.0f and %.0f: expected two consecutive vertices "
+                        "of the file's %u",
+                        e, values[PLY_VERTEX1], values[PLY_VERTEX2], ply->vertices->count);
         if (reader_ok(reader)) ply->joined[(size_t)a] = 1;
     }
 }
@@ -170,8 +172,7 @@ static void refuse_mesh(Ply *ply)
         const PlyElement *element = &ply->file.element[i];
         if (element->count &&
             (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
-            reader_fail(ply->reader,
-                        "a mesh of %u faces, not hair: expected hair; a mesh is given with --mesh",
+            reader_fail(ply->reader, "a mesh of %u faces, not hair: " FOREIGN_WANTS_HAIR,
                         element->count);
     }
 }
@@ -210,12 +211,12 @@ static void set_sizes(Ply *ply, uint32_t size)
             end++;
         }
         if (end > strands->vertex_count)
-            reader_fail(ply->reader, "the strands need %llu vertices or more, the file has %u",
+            reader_fail(ply->reader, "the strands need at least %llu vertices, but the file has %u",
                         (unsigned long long)end, strands->vertex_count);
         strands->first[s + 1] = (uint32_t)end;
     }
     if (reader_ok(ply->reader) && end != strands->vertex_count)
-        reader_fail(ply->reader, "the strands need %llu vertices in all, the file has %u",
+        reader_fail(ply->reader, "the strands need %llu vertices in all, but the file has %u",
                     (unsigned long long)end, strands->vertex_count);
 }
 

@@ -204,8 +204,8 @@ static uint32_t find_common_size(const Strands *strands, const char *path, Error
     for (uint32_t s = 1; s < strands->strand_count; s++) {
         if (strands_size(strands, s) == size) continue;
         error_set(error, RESULT_FAILED,
-                  "%s: strand %u has %u vertices, strand 0 has %u; binary TressFX needs equal "
-                  "numbers (text or HAIR take any)",
+                  "%s: strand %u has %u vertices, strand 0 has %u: expected equal numbers in a "
+                  "binary TressFX file (--resample N makes them equal), or --format text or hair",
                   path, s, strands_size(strands, s), size);
         return 0;
     }
@@ -224,8 +224,10 @@ static uint32_t place_array(uint64_t *end, const void *array, uint64_t count, ui
 
 static Result fail_too_large(const char *path, Error *error)
 {
-    return error_set(error, RESULT_FAILED, "%s: more than the 4 GiB that TressFX's offsets reach",
-                     path);
+    return error_set(
+        error, RESULT_FAILED,
+        "%s: too much hair: expected less than 4 GiB, the limit of the offsets in binary TressFX",
+        path);
 }
 
 static void put_counts(FILE *stream, float version, const Strands *strands, uint32_t size)

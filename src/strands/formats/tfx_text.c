@@ -79,8 +79,9 @@ static void read_strand_count(Reader *reader, Head *head)
     if (head->strands == 0)
         reader_fail(reader, "numStrands 0: expected at least 1");
     else if (head->strands > room)
-        reader_fail(reader, "numStrands %u: the file has room for at most %llu", head->strands,
-                    (unsigned long long)room);
+        reader_fail(reader,
+                    "numStrands %u: expected at most %llu, the number that fits into the file",
+                    head->strands, (unsigned long long)room);
 }
 
 // Reads one parameter; a line may have several.
@@ -167,7 +168,8 @@ static uint32_t read_strand_head(Reader *reader, FormatSource *source, uint32_t 
     }
     uint64_t room = ((uint64_t)reader_left(reader) + 1) / BYTES_PER_VERTEX;
     if (reader_ok(reader) && size > room)
-        reader_fail(reader, "numVerts %u: the file has room for at most %llu", size,
+        reader_fail(reader,
+                    "numVerts %u: expected at most %llu, the number that fits into the file", size,
                     (unsigned long long)room);
     reader_next_line(reader);
     return reader_ok(reader) ? size : 0;
@@ -195,11 +197,12 @@ static void read_strands(Reader *reader, FormatSource *source, const Head *head)
 {
     for (uint32_t s = 0; s < head->strands && reader_ok(reader); s++) {
         if (reader_ended(reader) && reader_ok(reader))
-            reader_fail(reader, "the file ends after %u of %u strands", s, head->strands);
+            reader_fail(reader, "%u strands in the file: expected %u, the number in its header", s,
+                        head->strands);
         read_strand(reader, source, s, head->max_vertices);
     }
     if (reader_ok(reader) && !reader_ended(reader))
-        reader_fail_expected(reader, "the end of the file behind the last strand");
+        reader_fail_expected(reader, "the end of the file after the last strand");
 }
 
 // A rotation is in radians, as in AMD's loader, unless one of its numbers exceeds a full turn (2

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads `.usda`: all visible BasisCurves prims, in the order of the file, with the transforms of
 // their parents and, if the caller wants them, all times. Hidden prims are left out and counted.
+#include "base/foreign.h"
 #include "base/usd_stage.h"
 #include "strands/formats/basis_curves.h"
 #include "strands/formats/format.h"
@@ -191,10 +192,10 @@ static Result make_frames(const Usd *usd, FormatSource *source, const Strands *s
     size_t each = source->strands.vertex_count;
     double most = 64.0 * ((double)reader->size + 1e6), size = 12.0 * (double)each * times->count;
     if (size > most)
-        return reader_fail(reader,
-                           "%u frames of %zu vertices need %.0f MB: more than 64 times the "
-                           "file",
-                           times->count, each, size / 1e6);
+        return reader_fail(
+            reader,
+            "%u frames of %zu vertices need %.0f MB: more than 64 times the size of the file",
+            times->count, each, size / 1e6);
     source->frames = malloc(each * times->count * sizeof *source->frames + 1);
     if (!source->frames) return reader_fail_memory(reader);
     for (uint32_t f = 0; f < times->count && reader_ok(reader); ++f)
@@ -253,9 +254,8 @@ static Result read(FormatSource *source, Reader *reader)
     if (reader_ok(reader) && usd.curves_count == 0)
         reader_fail(reader,
                     *source->note ? "no BasisCurves with points (%s)"
-                    : usd.meshes
-                        ? "meshes without hair: expected hair; a mesh is given with --mesh%s"
-                        : "no BasisCurves with points%s",
+                    : usd.meshes  ? "meshes without hair: " FOREIGN_WANTS_HAIR "%s"
+                                  : "no BasisCurves with points%s",
                     source->note);
     Strands *sets = calloc((size_t)usd.curves_count + 1, sizeof *sets);
     if (!sets) reader_fail_memory(reader);
