@@ -356,7 +356,7 @@ static void refuses_what_has_no_effect(void **state)
         const char *const parameters[5];
         const char *message;
     } WRONG[] = {{{"gust_period", "3"}, "no effect"},
-                 {{"raster", "blocks", "oit", "none"}, "exclude"},
+                 {{"raster", "blocks", "oit", "none"}, "expected only one of them"},
                  {{"framing", "hair", "eye", "0,0,3"}, "--framing hair: expected an automatic"},
                  {{"unit", "cm"}, "--unit: has no effect: the hair is from an array"},
                  {{"strict", "true"}, "--strict: has no effect: the hair is from an array"},
@@ -562,7 +562,8 @@ static void children_keep_their_parents(void **state)
     tractrix_renderer_destroy(NULL);
     const TractrixDeviceOptions both = {sizeof both, NULL, true, true},
                                 none = {sizeof none, "no such device", false, false};
-    library_refused(tractrix_device_open(&own, &both, &error), TRACTRIX_USAGE, "exclude");
+    library_refused(tractrix_device_open(&own, &both, &error), TRACTRIX_USAGE,
+                    "expected only one of them");
     library_refused(tractrix_device_open(&own, &none, &error), TRACTRIX_NO_GL, "no such device");
 }
 
