@@ -277,7 +277,7 @@ check-warnings: # where warnings are errors anyway (CI), the usual build is the 
 	$(QUIET) WERROR=1 OUT=$(if $(WERROR),$(OUT),$(SIDE)check-gcc) all tests
 check-clang: $(OUT)/version.h # its warnings need no code: the files are parsed only
 	@command -v clang >/dev/null || { echo "no clang here: skipped"; exit 0; }; \
-	printf '%s\n' $(wildcard src/*/*.c src/*/*/*.c tests/*/*.c) | xargs -n 16 -P $$(nproc) clang $(C_FLAGS) -Werror -Itests -fsyntax-only
+	printf '%s\n' $(SOURCES) $(MAINS) $(STAND_IN) $(TESTS) $(KEEP) $(SUPPORT) $(FUZZ) $(wildcard tests/faults/*.c) | xargs -n 16 -P $$(nproc) clang $(C_FLAGS) -Werror -Itests -fsyntax-only
 check-cppcheck: # readdirCalled: it asks for readdir_r, which POSIX has since withdrawn
 	@mkdir -p $(SIDE)check-cppcheck
 	@cppcheck -j $$(nproc) --quiet --std=c11 --language=c --library=posix --enable=warning,performance,portability --inline-suppr \
