@@ -16,9 +16,9 @@ make_checkout() {
     cat >"$work/checkout/small" <<END
 #!/bin/sh
 case " \$* " in
-*" --contact-sheet "* | *%*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --frames 4 ;;
-*" --frames 1 "* | " docs/"* | *.png\ *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft ;;
-*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --frames 4 ;;
+*" --contact-sheet "* | *%*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --preroll 0 --frames 4 ;;
+*" --frames 1 "* | " docs/"* | *.png\ *) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --preroll 0 ;;
+*) exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --preroll 0 --frames 4 ;;
 esac
 END
     chmod +x "$work/checkout/small"
