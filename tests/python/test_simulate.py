@@ -179,7 +179,7 @@ def test_wrong_arguments_are_named(curls, arguments, place):
     (np.zeros((4, 3)), r"strands: shape \(4, 3\): expected"),
     (np.zeros((4, 2, 2)), "strands: shape"),
     ([], "strands: an empty list"),
-    ((np.zeros((4, 3)), np.array([2, 3])), "strands: the sizes add up to 5, 4 points"),
+    ((np.zeros((4, 3)), np.array([2, 3])), "strands: the sizes add up to 5: expected 4, the number of points"),
     (np.zeros((1, 2, 3)), "0"),  # vertices that coincide
     (np.full((1, 2, 3), np.nan), "0"),
     (np.array([[[1j, 0, 0], [0, 0, 1]]]), "strands: got"),
