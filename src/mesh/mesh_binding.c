@@ -12,7 +12,7 @@ static int compare_floats(const void *a, const void *b)
 }
 
 // Rotates v by a unit quaternion with vector part u and scalar w: v + 2 w (u x v) + 2 u x (u x v).
-static void turn_vector(const double q[4], const double v[3], double turned[3])
+static inline void turn_vector(const double q[4], const double v[3], double turned[3])
 {
     Double3 once, twice;
     double3_cross(q, v, once);
@@ -79,10 +79,12 @@ RigidMotion mesh_binding_motion(const MeshBinding *binding, uint32_t i, const fl
             place[k] += point->weight[c] * (double)position[point->corner[c]][k];
     }
     for (int k = 0; k < 4; ++k) norm += motion.rotation[k] * motion.rotation[k];
-    // If the corners' rotations cancel, use that of the corner with the largest weight.
-    bool cancel = !(norm > 1e-6);
-    for (int k = 0; k < 4; ++k)
-        motion.rotation[k] = cancel ? first[k] : motion.rotation[k] / sqrt(norm);
+    if (norm > 1e-6) {
+        double scale = 1 / sqrt(norm);
+        for (int k = 0; k < 4; ++k) motion.rotation[k] *= scale;
+    } else { // the corners' rotations cancel
+        memcpy(motion.rotation, first, sizeof motion.rotation);
+    }
     turn_vector(motion.rotation, point->place, turned);
     double3_subtract(place, turned, motion.translation);
     return motion;
