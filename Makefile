@@ -280,7 +280,7 @@ check-clang: $(OUT)/version.h # its warnings need no code: the files are parsed 
 	printf '%s\n' $(SOURCES) $(MAINS) $(STAND_IN) $(TESTS) $(KEEP) $(SUPPORT) $(FUZZ) $(wildcard tests/faults/*.c) | xargs -n 16 -P $$(nproc) clang $(C_FLAGS) -Werror -Itests -fsyntax-only
 check-cppcheck: # readdirCalled: it asks for readdir_r, which POSIX has since withdrawn
 	@mkdir -p $(SIDE)check-cppcheck
-	@cppcheck -j $$(nproc) --quiet --std=c11 --language=c --library=posix --enable=warning,performance,portability --inline-suppr \
+	@cppcheck --quiet --std=c11 --language=c --library=posix --enable=warning,performance,portability --inline-suppr \
 	    --suppress=readdirCalled --error-exitcode=1 --cppcheck-build-dir=$(SIDE)check-cppcheck -D_GNU_SOURCE -I. -Isrc -Iglsl -Itests src tests
 check-shaders:
 	$(QUIET) all
