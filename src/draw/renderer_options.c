@@ -9,6 +9,7 @@ RendererOptions renderer_options_of(const RunParams *run)
                                .oit = (Oit)run->oit,
                                .oit_layers = run->oit_layers,
                                .least_seen = run->least_seen,
+                               .ribbon_length = run->ribbon_length,
                                .width = run->size[0],
                                .height = run->size[1],
                                .samples = run->samples,

@@ -52,10 +52,12 @@ typedef struct RendererOptions {
     LodOptions lod;
     Oit oit; // how the fragments of a pixel are blended; auto: abuffer. Others than auto make
              // raster auto choose quads
-    float least_seen;   // blocks: ribbons are shaded only if this share of a pixel is visible of
-                        // them, 0 .. 0.5
-    int oit_layers;     // abuffer: number of layers in order, 1 .. 64; 0: 8, with two samples 16
-    int64_t pool_bytes; // maximum size of the A-buffer; 0: the driver's limit
+    float least_seen;    // blocks: ribbons are shaded only if this share of a pixel is visible of
+                         // them, 0 .. 0.5
+    float ribbon_length; // blocks: longest ribbon in samples' px for which points of a strand are
+                         // left out, 0 .. 64
+    int oit_layers;      // abuffer: number of layers in order, 1 .. 64; 0: 8, with two samples 16
+    int64_t pool_bytes;  // maximum size of the A-buffer; 0: the driver's limit
 } RendererOptions;
 
 // Options from the parameters of a run. Exposure, tone, kind, AOV, floor and the mesh's shading

@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The largest distance in px between kept points of a strand. Colours are interpolated over this
-// distance.
-static const float FAR = 1;
-
 static void forget_room(Lanes *lanes)
 {
     for (uint32_t i = 0; i < lanes->room; ++i) tint_table_destroy(&lanes->batches[i].tints);
@@ -232,7 +228,7 @@ static Result project(Lanes *lanes, const BackendFrame *frame, Error *error)
     }
     TRY(shades_begin(&lanes->shades, lanes->hairs.points + 1, error));
     return projection_find(&lanes->projection, &lanes->hairs, draw, hides ? &lanes->hidden : NULL,
-                           FAR, lanes->raster.bins.part_room, error);
+                           lanes->options->ribbon_length, lanes->raster.bins.part_room, error);
 }
 
 static Result shade(void *state, const BackendFrame *frame, Error *error)

@@ -12,7 +12,11 @@
 
 #include <stdlib.h>
 
-enum { BESIDE = W }; // spare room behind a strand's last point, so loops may run past it
+enum {
+    BESIDE = W, // spare room behind a strand's last point, so loops may run past it
+    MOST_SHARE =
+        16 // of a strand: a ribbon of more than 1 px has at most 1 / MOST_SHARE of its parts
+};
 
 // A point of each strand of a tile.
 typedef struct Row {
@@ -149,12 +153,14 @@ SIMD_INLINE RibbonPoint point_of(const Row *row, int i)
 }
 
 // Decides which points are kept, one bit for each strand: the first and the last, and each point
-// after which the ribbon would bend too much or become too long.
+// after which the ribbon would bend too much or become too long. Colours change along a strand, so
+// a ribbon of more than 1 px is only a small part of it.
 SIMD_INLINE void keep_points(const Row *rows, int points, float far, uint16_t *masks)
 {
     Row kept = rows[0];
     float bent[W];
-    for (int i = 0; i < W; ++i) bent[i] = 0;
+    int from[W], most = points / MOST_SHARE;
+    for (int i = 0; i < W; ++i) bent[i] = 0, from[i] = 0;
     masks[0] = masks[points - 1] = 0xffff;
     for (int j = 2; j < points; ++j) {
         const Row *here = &rows[j], *before = &rows[j - 1];
@@ -163,8 +169,10 @@ SIMD_INLINE void keep_points(const Row *rows, int points, float far, uint16_t *m
             float x = here->x[i] - kept.x[i], y = here->y[i] - kept.y[i],
                   sum = bent[i] +
                         ribbon_bend(point_of(&kept, i), point_of(before, i), point_of(here, i));
-            bool end = (sum > 1) | (x * x + y * y > far * far);
+            float longest = j - from[i] > most ? simd_min(far, 1) : far;
+            bool end = (sum > 1) | (x * x + y * y > longest * longest);
             ends[i] = end;
+            from[i] = end ? j - 1 : from[i];
             bent[i] = end ? 0 : sum;
             kept.x[i] = end ? before->x[i] : kept.x[i];
             kept.y[i] = end ? before->y[i] : kept.y[i];

@@ -39,9 +39,9 @@ typedef struct Projection {
 } Projection;
 
 // Projects all strands into the image of `draw`. `hidden`: depths of opaque surfaces; NULL: none. A
-// point is left out where the ribbon is straight and no longer than `far` px; colours are computed
-// at the kept points only. `parts`: threads, 1 to PARALLEL_MOST, the same in each call.
-// RESULT_FAILED if memory is short.
+// point is left out where the ribbon is straight and no longer than `far` px, or, beyond 1 px, than
+// a sixteenth of the strand; colours are computed at the kept points only. `parts`: threads, 1 to
+// PARALLEL_MOST, the same in each call. RESULT_FAILED if memory is short.
 Result projection_find(Projection *projection, const LaneHairs *hairs, const DrawParams *draw,
                        const Hidden *hidden, float far, int parts, Error *error);
 void projection_destroy(Projection *projection);

@@ -84,6 +84,7 @@ static Scene meter_scene(const Scene *scene, Aov aov)
     run->tone_map = TONE_NONE;
     run->samples = 1;
     run->raster = RASTER_BLOCKS;
+    run->ribbon_length = 1; // in a small image longer ribbons would change the exposure
     run->oit = OIT_AUTO;
     run->oit_layers = 0;
     run->floor = FLOOR_NONE;
