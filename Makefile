@@ -114,7 +114,7 @@ LANE_PIXELS := $(addprefix $(OUT)/lanes/,composite.o pixels.o shade.o project.o)
 # Lanes: without these flags, selects and square roots are not vectorised, because they might trap or set errno. Loops
 # of 16 lanes must not be unrolled before they are vectorised (gcc unrolls loops of up to 16 turns). The results have
 # the same bits.
-$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/mesh/head.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
+$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/head.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
 $(LANE_PIXELS): C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
 $(OUT)/glsl_sources.c: scripts/embed-text $(SHADERS) $(OUT)/files

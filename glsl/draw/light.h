@@ -33,6 +33,7 @@
 #define BIND_LIGHT_SCATTER 4 // [kind][class][channel][in][out], see light_scatter.comp
 #define BIND_LIGHT_GATHER  5 // [kind][CELL_PATCHES][LIGHT_WIDE][CELL_PATCH_NODES]
 #define BIND_LIGHT_ALL     6 // vec4 a slot and ordinate
+#define BIND_LIGHT_CONE    7 // vec4: [kind][light][CELL_NODES][CONE_ROWS], see kernel/cone.h
 
 #define LIGHT_ORDINATES 48                    // directions of light
 #define LIGHT_LANES     8                     // ordinates side by side in a table's row
@@ -46,12 +47,14 @@
 
 SHARED_STRUCT(LightCell)
 {
-    vec4 glow;     // rgb: light that the mesh reflects
-    vec4 tint;     // rgb: albedo over the kind's albedo
-    vec4 mean;     // rgb: mean light; w = 1: the cell is hidden, the mean is enough
-    uint tints[4]; // three are used: low words of the sums of painted areas
-    uint carry[4]; // their high words
-    ivec4 places;  // x: index of the cell; y: main tangent and kind
+    vec4 glow;             // rgb: light that the mesh reflects
+    vec4 tint;             // rgb: albedo over the kind's albedo; w: area of the cell's hair
+    vec4 around;           // rgb: cone_around; w: spread of tangents, rad (kernel/cone.h)
+    float lit[MAX_LIGHTS]; // area that each light reaches
+    vec4 mean;             // rgb: mean light; w = 1: the cell is hidden, the mean is enough
+    uint tints[4];         // three are used: low words of the sums of painted areas
+    uint carry[4];         // their high words
+    ivec4 places;          // x: index of the cell; y: main tangent and kind
 };
 
 SHARED_STRUCT(LightState)
@@ -73,7 +76,8 @@ SHARED_STRUCT(LightState)
 
 UNIFORM_BLOCK(LightParams, light_params, BIND_LIGHT)
 {
-    vec4 turn[3];         // xyz: unit axes of the lattice in the world
+    vec4 turn[3];         // xyz: unit axes of the lattice in the world; turn[0].w: area of a
+                          // strand in a cell, see light_field_strand
     vec4 low;             // xyz, m: the first cell's corner in these axes; w, m: side of a cell
     uvec4 count;          // xyz: cells along each axis; w: all cells
     vec4 way[MAX_LIGHTS]; // xyz: unit, to the light, or a lamp's place, m; w: map, -1: none

@@ -6,6 +6,7 @@
 #include "draw/light.glsl"
 #include "draw/light_class.glsl"
 #include "draw/light_march.glsl"
+#include "kernel/cone.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -44,7 +45,8 @@ void add_tangent(inout Tangents all, int which, float area)
     all.tensor += area * outerProduct(t, t);
 }
 
-int main_class(Tangents all)
+// `spread`: of the tangents around it (kernel/cone.h).
+int main_class(Tangents all, out float spread)
 {
     vec3 main = all.main;
     for (int turn = 0; turn < 8; ++turn) {
@@ -52,6 +54,8 @@ int main_class(Tangents all)
         float square = dot(next, next);
         main = square > 0.0 ? next * inversesqrt(square) : main;
     }
+    spread = cone_spread(dot(main, all.tensor * main) / max(all.area, 1e-12), all.area,
+                         light_params.turn[0].w);
     main = dot(all.mean, main) < 0.0 ? -main : main;
     float most = max(max(all.kinds.x, all.kinds.y), max(all.kinds.z, all.kinds.w));
     int kind = all.kinds.x == most ? 0 : all.kinds.y == most ? 1 : all.kinds.z == most ? 2 : 3;
@@ -94,12 +98,15 @@ void main()
     vec3 sent = vec3(0.0);
     for (int light = 0; light < int(light_params.lights); ++light) {
         float passed = find_passed(place, light);
+        float lit = 0.0;
         vec3 part = vec3(0.0);
         for (int which = 0; which < classes && passed > 0.0; ++which) {
             float met = sum_of(slot, which, 1 + light);
             if (met == 0.0) continue;
+            lit += met;
             part += met * passed * first_of(which, light, d);
         }
+        if (gl_LocalInvocationID.x == 0u) cell[slot].lit[light] = lit * passed;
         vec3 color = draw_params.light_color[light].rgb;
         sent += part * color * tint / max(tau, 1e-12);
     }
@@ -108,6 +115,8 @@ void main()
     int at = ordinate_address(d, slot);
     for (int k = 0; k < 3; ++k) source[at + k] = sent[k];
     if (d > 0) return;
-    cell[slot].tint = vec4(tint, 0.0);
-    cell[slot].places.y = main_class(tangents);
+    cell[slot].tint = vec4(tint, tangents.area);
+    float spread;
+    cell[slot].places.y = main_class(tangents, spread);
+    cell[slot].around = vec4(0.0, 0.0, 0.0, spread);
 }

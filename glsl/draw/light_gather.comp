@@ -9,14 +9,17 @@
 #include "common/hair_address.glsl"
 #include "draw/curve.glsl"
 #include "draw/light.glsl"
+#include "kernel/cone.h"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
 layout(location = 0) uniform int kind;
 layout(binding = BIND_LIGHT_ALL) uniform samplerBuffer all_light;
 layout(binding = BIND_LIGHT_GATHER) uniform samplerBuffer gather;
+layout(binding = BIND_LIGHT_CONE) uniform samplerBuffer cone;
 layout(std430, binding = BIND_LIGHT_SLOTS_OUT) readonly buffer Slots { int slots[]; };
 layout(std430, binding = BIND_LIGHT_CELLS_OUT) readonly buffer Cells { LightCell cell[]; };
+layout(std430, binding = BIND_LIGHT_STATE_OUT) readonly buffer State { LightState state; };
 layout(std430, binding = BIND_LIGHT_SEEN_OUT) writeonly buffer Seen { float seen[]; };
 
 // The weight of an ordinate's light towards the eye, interpolated between the four nodes around a
@@ -45,6 +48,44 @@ vec3 light_at(int slot, int d)
                     : texelFetch(all_light, slot * LIGHT_ORDINATES + d).rgb;
 }
 
+// A row of the cone's table at a tangent.
+vec3 cone_row(CellTangent at, int light, int row)
+{
+    int nodes = (kind * MAX_LIGHTS + light) * CELL_NODES + cell_node(at.in_patch, at.node),
+        here = nodes * CONE_ROWS + row, below = here + CELL_NODES_ROW * CONE_ROWS;
+    return mix(mix(texelFetch(cone, here).rgb, texelFetch(cone, here + CONE_ROWS).rgb, at.u),
+               mix(texelFetch(cone, below).rgb, texelFetch(cone, below + CONE_ROWS).rgb, at.u),
+               at.v);
+}
+
+// What brings the light of a place back to the cone of its lamps' light (kernel/cone.h). The slots
+// and weights of the cells around it.
+vec3 narrowing(ivec4 near, ivec4 far, vec4 plane, vec2 along, CellTangent at)
+{
+    float spread = 0.0, area = 0.0, lit[MAX_LIGHTS];
+    vec3 around = vec3(0.0);
+    for (int l = 0; l < MAX_LIGHTS; ++l) lit[l] = 0.0;
+    for (int q = 0; q < 8; ++q) {
+        int slot = q < 4 ? near[q] : far[q - 4];
+        if (slot < 0 || slot >= int(state.filled)) continue;
+        float weight = plane[q % 4] * along[q / 4];
+        area += weight * cell[slot].tint.w;
+        spread += weight * cell[slot].tint.w * cell[slot].around.w;
+        around += weight * cell[slot].around.rgb;
+        for (int l = 0; l < int(light_params.lights); ++l) lit[l] += weight * cell[slot].lit[l];
+    }
+    float place = cone_place(spread / max(area, 1e-12));
+    if (!(place < float(CONE_LAST)) || light_params.lights == 0u) return vec3(1.0);
+    int row = int(place);
+    vec3 exact = around, grid = around, ratio;
+    for (int l = 0; l < int(light_params.lights); ++l) {
+        exact += lit[l] * mix(cone_row(at, l, row), cone_row(at, l, row + 1), place - float(row));
+        grid += lit[l] * cone_row(at, l, CONE_LAST);
+    }
+    for (int c = 0; c < 3; ++c) ratio[c] = grid[c] > 0.0 ? cone_ratio(exact[c], grid[c]) : 1.0;
+    return ratio;
+}
+
 vec3 show(vec3 x, vec3 t)
 {
     int own = slots[cell_address(cell_around(x))];
@@ -70,7 +111,7 @@ vec3 show(vec3 x, vec3 t)
                                plane.z * light_at(far.z, d) + plane.w * light_at(far.w, d));
         sum += light * weight_of(tangent, d);
     }
-    return sum;
+    return sum * narrowing(near, far, plane, vec2(low.z, high.z), tangent);
 }
 
 void put(int s, int point, int points, vec3 light)

@@ -28,6 +28,8 @@ SHARED_FUNCTION uint cell_strand(uint n, uint drawn, uint step)
 #define CELL_PATCH_NODES 16  // nodes of a patch: [row][column]
 #define CELL_PATCHES_ROW 10  // CELL_SIDE / CELL_PATCH_SIDE
 #define CELL_PATCHES     100 // [row][column]
+#define CELL_NODES_ROW   31  // CELL_SIDE + 1
+#define CELL_NODES       961 // [row][column]
 
 // The place of a tangent among the nodes: the first of the four around it, and its fractions along
 // the row (u) and the column (v).
@@ -57,6 +59,14 @@ SHARED_FUNCTION CellTangent cell_tangent(float x, float y, float z)
     at.u = u - FLOAT(column);
     at.v = v - FLOAT(row);
     return at;
+}
+
+// The number of the first node among all nodes.
+SHARED_FUNCTION int cell_node(int in_patch, int node)
+{
+    int row = in_patch / CELL_PATCHES_ROW * CELL_PATCH_SIDE + node / CELL_PATCH_ROW,
+        column = in_patch % CELL_PATCHES_ROW * CELL_PATCH_SIDE + node % CELL_PATCH_ROW;
+    return row * CELL_NODES_ROW + column;
 }
 
 // --- Light on its way through a cell with the source S: out = S + (in - S) exp(-tau); the cell's

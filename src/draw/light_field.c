@@ -127,6 +127,18 @@ void light_field_find_lights(LightField *field, const GridScene *scene)
     }
 }
 
+float light_field_strand(const LightField *field, const GridScene *scene)
+{
+    float most = 0;
+    for (uint32_t h = 0; h < scene->hair_count; ++h) {
+        const MaterialParams *m = &scene->hair[h].caster.material;
+        float weight = (float)m->drawn_strands /
+                       (float)cell_strands(m->drawn_strands, light_field_step(scene));
+        most = fmaxf(most, 2 * m->radius * m->shadow_opacity * weight / field->lattice.side);
+    }
+    return most;
+}
+
 float light_field_opacity(const GridScene *scene)
 {
     float least = 1;
@@ -193,6 +205,7 @@ void light_field_destroy(LightField *field)
         free(field->kinds[k].scatter);
         free(field->kinds[k].first);
         free(field->kinds[k].gather);
+        free(field->kinds[k].cone);
     }
     free(field->walls);
     *field = (LightField){0};

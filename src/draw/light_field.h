@@ -4,6 +4,7 @@
 // fibres.
 #pragma once
 
+#include "draw/light_cone.h"
 #include "draw/light_scene.h"
 
 #include "glsl/draw/light.h"
@@ -16,7 +17,13 @@ enum { GRID_WIDE = LIGHT_WIDE }; // floats per cell: [group][channel][lane]
 // agreed best with path-traced light.
 #define GRID_BLUR (0.75f / ORDINATES)
 
-typedef enum FieldTable { FIELD_FIRST, FIELD_SCATTER, FIELD_GATHER, FIELD_TABLES } FieldTable;
+typedef enum FieldTable {
+    FIELD_FIRST,
+    FIELD_SCATTER,
+    FIELD_GATHER,
+    FIELD_CONE,
+    FIELD_TABLES
+} FieldTable;
 
 // The tables of one kind of fibre, valid for `lobes`.
 typedef struct GridKind {
@@ -29,6 +36,9 @@ typedef struct GridKind {
     float (*gather)[GRID_WIDE][CELL_PATCH_NODES]; // [CELL_PATCHES], owned
     float gather_eye[3];
     bool has_gather;
+    float (*cone)[CELL_NODES][CONE_ROWS][4]; // [lights], owned: see kernel/cone.h
+    ConeView cone_views[MAX_LIGHTS];         // for which `cone` was computed
+    bool has_cone[MAX_LIGHTS];
     uint32_t made[FIELD_TABLES]; // changes whenever a table is made
 } GridKind;
 
@@ -107,6 +117,10 @@ static inline uint light_field_step(const GridScene *scene)
     return scene->step > 1 ? scene->step : 1;
 }
 
+// The largest area that a strand of the sample adds to a cell that it crosses along an axis, as a
+// share of the cell's side.
+float light_field_strand(const LightField *field, const GridScene *scene);
+
 // The ordinate that is nearest to a direction of the world, and the least ratio of the hair's
 // opacity to the eye and to light.
 int light_field_nearest(const LightLattice *lattice, const float way[3]);
@@ -122,6 +136,7 @@ Result light_field_make_first(LightField *field, const GridScene *scene, Error *
 Result light_field_make_scatter(LightField *field, const GridScene *scene, const int *classes,
                                 int count, Error *error);
 Result light_field_make_gather(LightField *field, const GridScene *scene, Error *error);
+Result light_field_make_cone(LightField *field, const GridScene *scene, Error *error);
 
 // The values of one table of a kind.
 const float *light_field_table(const GridKind *kind, FieldTable table);

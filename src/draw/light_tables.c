@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LANES = ORDINATE_LANES, NODES_ROW = CELL_SIDE + 1 };
+enum { LANES = ORDINATE_LANES, NODES_ROW = CELL_NODES_ROW };
 
 static void find_group_ways(int group, Ways *ways)
 {
@@ -239,10 +239,47 @@ Result light_field_make_gather(LightField *field, const GridScene *scene, Error 
     return RESULT_OK;
 }
 
+// --- From lights to the eye, by parallel fibres.
+
+static void make_cone(GridKind *kind, int light)
+{
+    const ConeView *view = &kind->cone_views[light];
+    ConeTerms terms;
+    cone_find_terms(&terms, &kind->lobes, GRID_BLUR, view->to_light[3]);
+    for (int node = 0; node < CELL_NODES; ++node) {
+        float t[3];
+        find_node_tangent(node, t);
+        cone_find_rows(&terms, view, t, kind->cone[light][node]);
+    }
+}
+
+Result light_field_make_cone(LightField *field, const GridScene *scene, Error *error)
+{
+    ConeView view = {.to_eye = {0}};
+    light_lattice_turn(&field->lattice, scene->to_eye, view.to_eye);
+    for (int k = 0; k < scene->kind_count && field->lights > 0; ++k) {
+        GridKind *kind = &field->kinds[k];
+        if (!kind->cone) kind->cone = calloc(MAX_LIGHTS, sizeof *kind->cone);
+        if (!kind->cone) return error_set(error, RESULT_FAILED, "no memory for light among hair");
+        for (int l = 0; l < field->lights; ++l) {
+            memcpy(view.to_light, field->to_light[l], sizeof view.to_light);
+            memcpy(view.color, scene->draw->light_color[l], sizeof view.color);
+            if (kind->has_cone[l] && memcmp(&kind->cone_views[l], &view, sizeof view) == 0)
+                continue;
+            kind->cone_views[l] = view;
+            make_cone(kind, l);
+            kind->has_cone[l] = true;
+            ++kind->made[FIELD_CONE];
+        }
+    }
+    return RESULT_OK;
+}
+
 static void forget_kind(GridKind *kind)
 {
     memset(kind->has_scatter, 0, sizeof kind->has_scatter);
     memset(kind->has_first, 0, sizeof kind->has_first);
+    memset(kind->has_cone, 0, sizeof kind->has_cone);
     kind->has_gather = false;
 }
 
@@ -263,6 +300,8 @@ const float *light_field_table(const GridKind *kind, FieldTable table)
         return (const float *)kind->first;
     case FIELD_SCATTER:
         return (const float *)kind->scatter;
+    case FIELD_CONE:
+        return (const float *)kind->cone;
     default:
         return (const float *)kind->gather;
     }

@@ -97,7 +97,8 @@ static void sort_classes(CellSum *sum)
 }
 
 // The main tangent, by power iteration on the sum of t t^T, with the sign of the mean tangent.
-static int find_main_class(const CellSum *sum)
+// `spread`: of the tangents around it; `strand`: a strand's area (kernel/cone.h).
+static int find_main_class(const CellSum *sum, float strand, float *spread)
 {
     float tensor[3][3] = {{0}}, mean[3] = {0}, kind_area[LIGHT_GRID_KINDS] = {0},
           main[3] = {0.577f, 0.577f, 0.578f}, most = 0;
@@ -120,6 +121,12 @@ static int find_main_class(const CellSum *sum)
         }
         for (int i = 0; i < 3 && length > 0; ++i) main[i] = next[i] / sqrtf(length);
     }
+    float along = 0, area = 0;
+    for (int i = 0; i < 3; ++i) {
+        area += tensor[i][i];
+        for (int j = 0; j < 3; ++j) along += main[i] * tensor[i][j] * main[j];
+    }
+    *spread = cone_spread(along / simd_max(area, 1e-12f), area / ITEM_STEPS, strand);
     if (mean[0] * main[0] + mean[1] * main[1] + mean[2] * main[2] < 0)
         for (int i = 0; i < 3; ++i) main[i] = -main[i];
     for (int k = 1; k < LIGHT_GRID_KINDS; ++k)
@@ -196,6 +203,20 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
         memcpy(grid_source(state, g, f), source + g * GROUP_WIDE, GROUP_WIDE * sizeof *source);
 }
 
+// All of a cell's part in the cone of its lamps' light but the ambient light (light_grid_gather.c).
+static void fill_cone(const LightGridState *state, const CellSum *sum,
+                      const float passed[MAX_LIGHTS], float spread, int f)
+{
+    GridCone cone = {.area = (float)sum->whole * (1 / ITEM_STEPS)};
+    for (int l = 0; l < state->field.lights; ++l) {
+        uint64_t lit = 0;
+        for (int u = 0; u < sum->count; ++u) lit += sum->class[sum->used[u]][1 + l];
+        cone.lit[l] = (float)lit * (passed[l] / ITEM_STEPS);
+    }
+    cone.spread = spread * cone.area;
+    state->cone[f] = cone;
+}
+
 // Transmittance and mean share of a passage. Along a direction the way through a cell is as long as
 // its side over the direction's main component.
 SIMD_INLINE void fill_passage(LightGridState *state, int f)
@@ -220,6 +241,7 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
     CellSum *sum = &fill->sums[part];
     int first = (int)((int64_t)state->filled * part / state->parts),
         end = (int)((int64_t)state->filled * (part + 1) / state->parts);
+    float strand = light_field_strand(&state->field, fill->scene);
     for (int f = first; f < end; ++f) {
         // Placing items has moved first_item to the end of each cell's items, so the last part's
         // entry is the end of this cell, and the previous cell's entry is its beginning.
@@ -235,7 +257,9 @@ SIMD_INLINE void fill_cells(const CellFill *fill, int part)
         float passed[MAX_LIGHTS];
         for (int l = 0; l < state->field.lights; ++l) passed[l] = find_passed(fill, f, l);
         fill_source(state, fill->scene, sum, passed, f);
-        state->class[f] = find_main_class(sum);
+        float spread;
+        state->class[f] = find_main_class(sum, strand, &spread);
+        fill_cone(state, sum, passed, spread, f);
         fill_passage(state, f);
         clear_sum(sum);
     }

@@ -25,8 +25,8 @@ static bool grow_cells(LightGridState *state, size_t cells)
 static bool grow_slots(LightGridState *state)
 {
     size_t filled = (size_t)state->filled, active = (size_t)state->active;
-    size_t of[10];
-    for (int i = 0; i < 10; ++i) of[i] = i < 5 ? state->filled_room : state->slot_room;
+    size_t of[11];
+    for (int i = 0; i < 11; ++i) of[i] = i < 5 || i == 10 ? state->filled_room : state->slot_room;
     filled += filled / 4, active += active / 4;
     if (state->filled_room >= (size_t)state->filled && state->slot_room >= (size_t)state->active)
         return true;
@@ -36,6 +36,7 @@ static bool grow_slots(LightGridState *state)
                 room_make(&state->tint, &of[3], filled, 3 * sizeof(float)) &&
                 room_make(&state->glow, &of[9], active, 3 * sizeof(float)) &&
                 room_make(&state->class, &of[4], filled, sizeof(int)) &&
+                room_make(&state->cone, &of[10], filled, sizeof *state->cone) &&
                 room_make(&state->sum, &of[5], active, GRID_WIDE * sizeof(float)) &&
                 room_make(&state->order, &of[6], active, GRID_WIDE * sizeof(float)) &&
                 room_make(&state->light, &of[7], active + 1, GRID_WIDE * sizeof(float)) &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Work for one position of the eye before light_grid_show.h reads the light: finds cells that lie
-// so deep in hair that they are hardly visible and get their mean light, and makes room for the
-// light that cells show.
+// so deep in hair that they are hardly visible and get their mean light, finds the ambient part of
+// the others' light, and makes room for the light that cells show.
 #include "lanes/light_grid_show.h"
 
 #include "base/room.h"
@@ -14,6 +14,9 @@ typedef struct Gather {
     LightGridState *state;
     int ordinate;  // the ordinate nearest to the direction of the eye
     float opacity; // least ratio, over all hair, of opacity to the eye and opacity to light
+    const DrawParams *draw;
+    float around[3]; // mean ambient radiance; `ambient`: there is some
+    bool ambient;
 } Gather;
 
 // --- Hidden cells.
@@ -31,22 +34,42 @@ static bool is_hidden(const Gather *gather, int slot)
     return light_grid_behind(state, cell, way, gather->ordinate, 2, most) > most;
 }
 
+// The ambient part of a cell's light beside the lamps'; `mean`: its mean light.
+static void find_around(const Gather *gather, int f, const float mean[3])
+{
+    const LightGridState *state = gather->state;
+    const FibreLobes *lobes = &state->field.kinds[state->class[f] / TANGENTS].lobes;
+    GridCone *cone = &state->cone[f];
+    for (int c = 0; c < 3; ++c) {
+        float lamps = 0;
+        for (int l = 0; l < state->field.lights; ++l)
+            lamps += cone->lit[l] * gather->draw->light_color[l][c];
+        cone->around[c] = cone_around(mean[c], lamps, gather->around[c], cone->area,
+                                      lobes->albedo[SCATTER_INCLINATIONS - 1][c]);
+    }
+}
+
+SIMD_INLINE void find_mean(const float light[GRID_WIDE], float mean[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        float sum = 0;
+        for (int g = 0; g < ORDINATE_GROUPS; ++g)
+            for (int l = 0; l < GRID_LANES; ++l) sum += light[(g * 3 + k) * GRID_LANES + l];
+        mean[k] = sum / ORDINATES;
+    }
+}
+
 SIMD_INLINE void find_hidden(const Gather *gather, int part)
 {
     LightGridState *state = gather->state;
     int first = (int)((int64_t)state->active * part / state->parts),
         end = (int)((int64_t)state->active * (part + 1) / state->parts);
     for (int s = first; s < end; ++s) {
-        const float *light = state->light + (size_t)s * GRID_WIDE;
         float *mean = state->hidden + (size_t)s * 4;
+        bool ambient = gather->ambient && s < state->filled;
         mean[3] = is_hidden(gather, s) ? 1 : 0;
-        if (mean[3] == 0) continue;
-        for (int k = 0; k < 3; ++k) {
-            float sum = 0;
-            for (int g = 0; g < ORDINATE_GROUPS; ++g)
-                for (int l = 0; l < GRID_LANES; ++l) sum += light[(g * 3 + k) * GRID_LANES + l];
-            mean[k] = sum / ORDINATES;
-        }
+        if (mean[3] > 0 || ambient) find_mean(state->light + (size_t)s * GRID_WIDE, mean);
+        if (ambient) find_around(gather, s, mean);
     }
 }
 
@@ -123,8 +146,12 @@ Result light_grid_prepare(LightGrid *grid, const GridScene *scene, Error *error)
     light_lattice_turn(&state->field.lattice, scene->draw->eye, state->eye);
     Gather gather = {.state = state,
                      .opacity = light_field_opacity(scene),
+                     .draw = scene->draw,
+                     .ambient = light_scene_has_sky(scene->draw),
                      .ordinate = light_field_nearest(&state->field.lattice, scene->to_eye)};
+    find_mean(state->field.around, gather.around);
     TRY(light_field_make_gather(&state->field, scene, error));
+    TRY(light_field_make_cone(&state->field, scene, error));
     memset(state->hidden + 4 * (size_t)state->active, 0, 4 * sizeof *state->hidden);
     run_find_hidden(&gather, state->parts);
     return forget_patches(state, scene->kind_count)

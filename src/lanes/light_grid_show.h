@@ -64,6 +64,40 @@ SIMD_INLINE void grid_find_places(const LightLattice *lattice, const float x[3][
     }
 }
 
+typedef float GridColor __attribute__((vector_size(16), aligned(4), may_alias));
+
+// The light of one row of a cone's table at a point, between the four nodes around its tangent.
+SIMD_INLINE GridColor grid_cone_row(const float (*nodes)[CONE_ROWS][4], int row, float u, float v)
+{
+    const float(*below)[CONE_ROWS][4] = nodes + CELL_NODES_ROW;
+    GridColor a = *(const GridColor *)nodes[0][row], b = *(const GridColor *)nodes[1][row],
+              c = *(const GridColor *)below[0][row], d = *(const GridColor *)below[1][row];
+    a += u * (b - a);
+    c += u * (d - c);
+    return a + v * (c - a);
+}
+
+// Brings the light that point i shows back to the cone of its lamps' light. `cone`: the sum over
+// the cells around it.
+SIMD_INLINE void grid_narrow(const LightGridState *state, int kind, const GridCone *cone,
+                             const GridPlaces *places, int i, float seen[3])
+{
+    float place = cone_place(cone->spread / simd_max(cone->area, 1e-12f));
+    if (!(place < CONE_LAST) || state->field.lights == 0) return;
+    int row = (int)place, node = cell_node(places->patch[i], places->node[i]);
+    GridColor exact = {cone->around[0], cone->around[1], cone->around[2]}, grid = exact;
+    for (int l = 0; l < state->field.lights; ++l) {
+        const float(*nodes)[CONE_ROWS][4] =
+            (const float(*)[CONE_ROWS][4])state->field.kinds[kind].cone[l] + node;
+        float u = places->u[i], v = places->v[i];
+        GridColor a = grid_cone_row(nodes, row, u, v), b = grid_cone_row(nodes, row + 1, u, v);
+        exact += cone->lit[l] * (a + (place - (float)row) * (b - a));
+        grid += cone->lit[l] * grid_cone_row(nodes, CONE_LAST, u, v);
+    }
+    for (int c = 0; c < 3; ++c)
+        if (grid[c] > 0) seen[c] *= cone_ratio(exact[c], grid[c]);
+}
+
 // Two neighbouring nodes: red, green, blue and an unused number of each.
 typedef float GridPair __attribute__((vector_size(32), aligned(4), may_alias));
 
@@ -72,6 +106,7 @@ SIMD_INLINE void grid_show_point(const LightGridState *state, int kind, const Gr
                                  int i, float seen[3])
 {
     GridPair row = {0}, next = {0};
+    GridCone cone = {.area = 0};
     for (int q = 0; q < 8; ++q) {
         int x = q & 1, y = q >> 1 & 1, z = q >> 2;
         float weight = places->share[2][z][i] * places->share[1][y][i] * places->share[0][x][i],
@@ -81,11 +116,14 @@ SIMD_INLINE void grid_show_point(const LightGridState *state, int kind, const Gr
         const float(*patch)[4] = light_grid_patch(state, kind, slot < 0 ? state->active : slot,
                                                   places->patch[i], scratch) +
                                  places->node[i];
+        if (slot >= 0 && slot < state->filled)
+            *(GridConeLanes *)&cone += weight * *(const GridConeLanes *)&state->cone[slot];
         row += weight * *(const GridPair *)patch[0];
         next += weight * *(const GridPair *)patch[CELL_PATCH_ROW];
     }
     row += places->v[i] * (next - row);
     for (int c = 0; c < 3; ++c) seen[c] = row[c] + places->u[i] * (row[4 + c] - row[c]);
+    grid_narrow(state, kind, &cone, places, i, seen);
 }
 
 // The light that the first `count` of 16 points send to the eye, linear RGB. x: world, m. Tangents:

@@ -82,6 +82,7 @@ void light_grid_destroy(LightGrid *grid)
     free(state->glow);
     free(state->tint);
     free(state->class);
+    free(state->cone);
     free(state->planes);
     if (state->patches) {
         free((void *)state->patches->of);

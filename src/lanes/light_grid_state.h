@@ -48,6 +48,19 @@ typedef struct GridPatches {
     size_t of_room;
 } GridPatches;
 
+// What a cell adds to the cone of its lamps' light (kernel/cone.h), each times its area.
+typedef struct GridCone {
+    float lit[MAX_LIGHTS]; // area that each light reaches
+    float around[3];       // cone_around
+    float spread;          // rad, of tangents
+    float area;
+    float unused[3];
+} GridCone;
+
+// The same as one vector.
+typedef float GridConeLanes __attribute__((vector_size(64), aligned(4), may_alias));
+_Static_assert(sizeof(GridCone) == sizeof(GridConeLanes), "a vector");
+
 typedef struct LightGridState {
     int parts; // threads
     LightField field;
@@ -72,6 +85,7 @@ typedef struct LightGridState {
     float *glow;     // [active][3]: light that the mesh reflects in a cell, linear RGB
     float *tint;     // [filled][3]: ratio of the albedo to the kind's
     int *class;      // [filled]: main tangent and kind
+    GridCone *cone;  // [filled]
     float *planes;   // [groups][3][plane]: two slices, and rows
     size_t plane;    // floats
     GridSpan *spans; // [groups][slices][rows]: cells that a sweep visits, see light_grid_spans.c

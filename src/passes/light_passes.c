@@ -37,6 +37,7 @@ void light_passes_destroy(LightPasses *passes)
         &passes->kinds[FIELD_FIRST].buffer,
         &passes->kinds[FIELD_SCATTER].buffer,
         &passes->kinds[FIELD_GATHER].buffer,
+        &passes->kinds[FIELD_CONE].buffer,
     };
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
     light_pass_destroy(&passes->programs);
@@ -49,10 +50,10 @@ void light_passes_destroy(LightPasses *passes)
 // --- Uploads.
 
 static Result upload(LightPasses *passes, GpuBuffer *buffer, const char *what, const void *data,
-                     size_t size, Error *error)
+                     size_t size, GLenum format, Error *error)
 {
     gpu_buffer_destroy(buffer);
-    return gpu_buffer_create(buffer, passes->programs.limits, what, (int64_t)size, data, GL_R32F,
+    return gpu_buffer_create(buffer, passes->programs.limits, what, (int64_t)size, data, format,
                              error);
 }
 
@@ -65,7 +66,8 @@ static Result upload_classes(LightPasses *passes, Error *error)
     memcpy(tables + LIGHT_TANGENT_AT, TANGENT, sizeof TANGENT);
     for (size_t i = 0; i < sizeof TANGENT_NEAREST; ++i)
         tables[LIGHT_NEAREST_AT + i] = ((const uint8_t *)TANGENT_NEAREST)[i];
-    return upload(passes, &passes->tables, "classes of tangents", tables, sizeof tables, error);
+    return upload(passes, &passes->tables, "classes of tangents", tables, sizeof tables, GL_R32F,
+                  error);
 }
 
 // Uploads a table of all kinds of hair (`bytes` for each), if it has changed.
@@ -77,7 +79,8 @@ static Result upload_kinds(LightPasses *passes, const GridScene *scene, FieldTab
     KindTableMade made = {.kinds = scene->kind_count, .lights = passes->field.lights};
     for (int k = 0; k < made.kinds; ++k) made.made[k] = kinds[k].made[table];
     if (mine->buffer.buffer && memcmp(&made, &mine->made, sizeof made) == 0) return RESULT_OK;
-    TRY(upload(passes, &mine->buffer, "fibre table", NULL, bytes * (size_t)made.kinds, error));
+    TRY(upload(passes, &mine->buffer, "fibre table", NULL, bytes * (size_t)made.kinds,
+               table == FIELD_CONE ? GL_RGBA32F : GL_R32F, error));
     for (int k = 0; k < made.kinds && bytes; ++k) {
         glBindBuffer(GL_SHADER_STORAGE_BUFFER, mine->buffer.buffer);
         glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(bytes * (size_t)k), (GLsizeiptr)bytes,
@@ -106,7 +109,7 @@ static Result upload_walls(LightPasses *passes, const GridScene *scene, Error *e
     size_t cells = ((size_t)n[0] + 2) * ((size_t)n[1] + 2) * ((size_t)n[2] + 2);
     TRY(light_field_find_walls(field, scene, error));
     return field->walled ? upload(passes, &passes->walls, "the mesh among hair", field->walls,
-                                  3 * cells * sizeof *field->walls, error)
+                                  3 * cells * sizeof *field->walls, GL_R32F, error)
                          : RESULT_OK;
 }
 
@@ -165,6 +168,7 @@ static void set_params(const LightPasses *passes, const GridScene *scene)
                 field->around[(d / ORDINATE_LANES * 3 + k) * ORDINATE_LANES + d % ORDINATE_LANES];
         }
     }
+    params.turn[0][3] = light_field_strand(field, scene);
     params.low[3] = lattice->side;
     params.count[3] = (uint)light_lattice_cells(lattice);
     set_lights(field, scene, &params);
@@ -431,9 +435,12 @@ Result light_passes_gather(LightPasses *passes, const GridScene *scene, ShadowCa
                            const ParticleLight *seen, Error *error)
 {
     if (!passes->filled) return RESULT_OK;
+    size_t cone_bytes = passes->field.lights ? MAX_LIGHTS * sizeof *passes->field.kinds->cone : 0;
     TRY(light_field_make_gather(&passes->field, scene, error));
     TRY(upload_kinds(passes, scene, FIELD_GATHER,
                      CELL_PATCHES * sizeof *passes->field.kinds->gather, error));
+    TRY(light_field_make_cone(&passes->field, scene, error));
+    TRY(upload_kinds(passes, scene, FIELD_CONE, cone_bytes, error));
     set_params(passes, scene);
     gpu_buffer_bind_storage(&passes->slots, BIND_LIGHT_SLOTS_OUT);
     gpu_buffer_bind_storage(&passes->cells, BIND_LIGHT_CELLS_OUT);
@@ -441,6 +448,7 @@ Result light_passes_gather(LightPasses *passes, const GridScene *scene, ShadowCa
     gpu_buffer_bind_storage(&passes->depth, BIND_LIGHT_DEPTH_OUT);
     gpu_buffer_bind_texture(&passes->light, BIND_LIGHT_ALL);
     gpu_buffer_bind_texture(&passes->kinds[FIELD_GATHER].buffer, BIND_LIGHT_GATHER);
+    gpu_buffer_bind_texture(&passes->kinds[FIELD_CONE].buffer, BIND_LIGHT_CONE);
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_HIDE, 0, error));
     light_pass_run_cells(&passes->programs, LIGHT_PASS_HIDE, passes->active);
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_GATHER, 0, error));

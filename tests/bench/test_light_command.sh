@@ -22,6 +22,16 @@ cp tests/data/light_straight/* "$work/straight/"
 run 0 light --reference "$work/straight" --case straight_black_sky,straight_brown_back --way none,grid --frames 1 --csv "$work/straight.csv"
 same "$(field "$work/straight.csv" verdict | grep -c holds)" 4 "rows of cases that hold"
 
+# Tables of 96 paths a pixel by --way traced, since Cycles's are wrong for this hair (docs/notes/straight_light.md).
+# The grid loses the shape of the light there, so rel is not asked.
+claim "the mean of straight blond hair is within 0.85 to 1.15 of our own path tracer's"
+mkdir "$work/blond"
+cp tests/data/light_traced/* "$work/straight/straight6k.tfx" "$work/blond/"
+run 1 light --reference "$work/blond" --way grid --frames 1 --csv "$work/blond.csv"
+for channel in r g b; do
+    same "$(field "$work/blond.csv" mean_$channel | head -2 | awk '{ good += $1 > 0.85 && $1 < 1.15 } END { print good }')" 2 "means of $channel"
+done
+
 claim "both rasterisers cover the same"
 run 0 light --case fur_brown_side --way grid --raster quads --frames 1 --csv "$work/quads.csv"
 run 0 light --case fur_brown_side --way grid --raster blocks --frames 1 --csv "$work/blocks.csv"

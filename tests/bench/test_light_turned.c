@@ -119,7 +119,7 @@ static void require_steady(void **state, const char *color, double most)
 // classes, 0.056 and 0.0254.
 static void blond_is_steady(void **state)
 {
-    require_steady(state, "0.95469,0.90633,0.79774", 0.04);
+    require_steady(state, "0.95469,0.90633,0.79774", 0.03);
 }
 
 static void brown_is_steady(void **state)
