@@ -391,13 +391,13 @@ Result drawing_begin(Drawing *drawing, const RendererOptions *options, const Dra
     static const unsigned aovs[] = {0, LOOK_WHITE, LOOK_WHITE, LOOK_TANGENT, LOOK_STRAND}; // [Aov]
     unsigned features = aovs[options->aov];
     fill_draw_params(options, mesh, frame, &drawing->draw);
+    drawing->items = items;
+    drawing->item_count = item_count;
+    set_widths(drawing, frame);
     if (options->aov == AOV_NONE)
         features = (lights_are_simple(frame) ? 0 : LOOK_LIGHTS) |
                    (drawing_has_wide_lights(&drawing->draw) ? LOOK_WIDE : 0) |
                    shadow_features(options, mesh);
-    drawing->items = items;
-    drawing->item_count = item_count;
-    set_widths(drawing, frame);
     drawing->whole = drawing->draw;
     find_boxes(drawing, options, mesh);
     TRY(make_room(drawing, error));
