@@ -9,7 +9,7 @@
 
 // Packs the rows for speed: filter 'up' in every row, compressed by ISA-L. The same image gives the
 // same bytes on the same kind of processor. Free `packed` with bytes_destroy. False when memory is
-// short; `packed` is then empty.
+// short or ISA-L refuses; `packed` is then empty.
 bool png_rows_pack(const Image *image, Bytes *packed);
 
 // Packs an IMAGE_8 with 1 channel, indices of a palette, as small as possible: no filter makes them

@@ -363,6 +363,7 @@ static void compare_cases(const Case *cases, size_t count)
             RendererOptions options = {.width = SIDE,
                                        .height = SIDE,
                                        .raster = kind < 3 ? RASTER_QUADS : RASTER_BLOCKS,
+                                       .ribbon_length = 2,
                                        .samples = 1 << kind % 3};
             memcpy(options.background, clear ? TRANSPARENT : DARK, sizeof DARK);
             studio_open(&studio, &options);
