@@ -275,7 +275,7 @@ check-benchmarks: # the published figures are those of these solvers and default
 	@scripts/benchmark-stamp check
 check-warnings: # where warnings are errors anyway (CI), the usual build is the check
 	$(QUIET) WERROR=1 OUT=$(if $(WERROR),$(OUT),$(SIDE)check-gcc) all tests
-check-clang: $(OUT)/version.h # its warnings need no code: the files are parsed only
+check-clang: $(OUT)/version.h # parsed only: warnings, but no errors of code generation or linking
 	@command -v clang >/dev/null || { echo "no clang here: skipped"; exit 0; }; \
 	printf '%s\n' $(SOURCES) $(MAINS) $(STAND_IN) $(TESTS) $(KEEP) $(SUPPORT) $(FUZZ) $(wildcard tests/faults/*.c) | xargs -n 16 -P $$(nproc) clang $(C_FLAGS) -Werror -Itests -fsyntax-only
 check-cppcheck: # readdirCalled: it asks for readdir_r, which POSIX has since withdrawn

@@ -76,8 +76,8 @@ SHARED_STRUCT(LightState)
 
 UNIFORM_BLOCK(LightParams, light_params, BIND_LIGHT)
 {
-    vec4 turn[3];         // xyz: unit axes of the lattice in the world; turn[0].w: area of a
-                          // strand in a cell, see light_field_strand
+    vec4 turn[3];         // xyz: unit axes of the lattice in the world; turn[0].w:
+                          // light_field_strand
     vec4 low;             // xyz, m: the first cell's corner in these axes; w, m: side of a cell
     uvec4 count;          // xyz: cells along each axis; w: all cells
     vec4 way[MAX_LIGHTS]; // xyz: unit, to the light, or a lamp's place, m; w: map, -1: none

@@ -30,8 +30,8 @@ SHARED_FUNCTION float cone_spread(float share, float area, float strand)
     return SHARED_SQRT(variance / SHARED_MAX(area + strand, 1e-12f) + least * least) - least;
 }
 
-// The place of a spread among the rows: the row before it is the integer part. `spread` lies below
-// CONE_LAST * CONE_STEP.
+// The place of a spread among the rows: the row before it is the integer part. From CONE_LAST on
+// nothing is corrected.
 SHARED_FUNCTION float cone_place(float spread) { return spread / CONE_STEP; }
 
 // The ambient light in a cell in the unit of the table, which is the light that lamps reach hair
@@ -44,7 +44,8 @@ SHARED_FUNCTION float cone_around(float mean, float lamps, float around, float a
            SHARED_MIN(SHARED_MAX(part - 0.25f * albedo * lamps, 0.0f), most);
 }
 
-// The correction, from the light of both tables.
+// The correction, from the light of both tables. Both are small far off the cone, where the series
+// is least certain; so the ratio has limits.
 SHARED_FUNCTION float cone_ratio(float exact, float grid)
 {
     return SHARED_MIN(SHARED_MAX(exact / SHARED_MAX(grid, 1e-20f), 0.05f), 2.0f);

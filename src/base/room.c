@@ -31,9 +31,9 @@ bool room_make(void *array, size_t *room, size_t count, size_t size)
     return memory != NULL;
 }
 
-// glibc returns memory once twice the largest block that has been freed so far is free, and at
-// first from 128 KiB on. So this acts as a larger image would, and unlike mallopt it leaves limits
-// alone that the host has set.
+// glibc returns memory once twice the largest block with its own mapping that has been freed so far
+// is free, and at first from 128 KiB on. So this acts as a larger image would, and unlike mallopt
+// it leaves limits alone that the host has set.
 void room_keep_freed(void)
 {
     void *volatile block = malloc(KEPT); // volatile: otherwise compilers leave both calls out

@@ -62,13 +62,14 @@ void cone_find_terms(ConeTerms *terms, const FibreLobes *lobes, float blur, floa
                 double spread = row * (double)CONE_STEP, tilts = SPREAD * spread * spread,
                        from = is_grid ? b : tilts, between = is_grid ? 2 * b : tilts,
                        to = is_grid ? b : 0,
-                       all = find_left(lobes, albedo, c, 0, 0), // a lamp's light has the mean 1
+                       all = find_left(lobes, albedo, c, 0,
+                                       0), // the scale makes the mean over all ways 1
                     left = find_left(lobes, albedo, c, l, from + w) *
                            find_left(lobes, albedo, c, l, to) /
                            (1 - met * find_left(lobes, albedo, c, l, between));
                 scale = (2 * l + 1) * (1 - met * all) / fmax(all * all, 1e-12);
                 if (is_grid) grid = left;
-                // From the second row on the grid's light takes over step by step.
+                // After the second row the grid's light takes over step by step.
                 double own = fmin((double)(CONE_LAST - row) / (CONE_LAST - 1), 1);
                 terms->left[row][c][l] = (float)(scale * (grid + own * (left - grid)));
             }

@@ -117,8 +117,8 @@ static inline uint light_field_step(const GridScene *scene)
     return scene->step > 1 ? scene->step : 1;
 }
 
-// The largest area that a strand of the sample adds to a cell that it crosses along an axis, as a
-// share of the cell's side.
+// The area that a strand of the sample adds to a cell that it crosses along an axis, over the
+// square of the cell's side: the largest of all hair, without the file's thickness.
 float light_field_strand(const LightField *field, const GridScene *scene);
 
 // The ordinate that is nearest to a direction of the world, and the least ratio of the hair's
