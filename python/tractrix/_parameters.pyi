@@ -378,9 +378,8 @@ class Parameters(TypedDict, total=False):
     """--raster blocks: smallest visible share of a pixel for which a ribbon is shaded; at most 7 % of a pixel's hair
     stays unshaded; pixels that transmit less than twice this share are finished; 0: off [0 to 0.5; default 0.01]"""
     ribbon_length: float
-    """longest ribbon for which --raster blocks leaves out points of straight strands (over 1 px: at most a sixteenth of
-    the strand); colours are interpolated along ribbons; --samples N: N px are one of the image; 0: none [0 to 64 px;
-    default 2]"""
+    """longest ribbon, in px of samples, for which --raster blocks leaves out points of straight strands (over 1 px: at
+    most a sixteenth of the strand); colours are interpolated along ribbons; 0: none [0 to 64 px; default 2]"""
     thickness: Numbers
     """of all vertices, one strand behind the other, relative to its mean, which `radius` gives"""
     uv: Numbers
