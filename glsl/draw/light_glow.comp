@@ -54,7 +54,8 @@ void main()
     if (slot >= int(state.filled + state.beside)) return;
     ivec3 place = cell_place(cell[slot].places.x);
     vec3 glow = vec3(0.0);
-    for (int light = 0; light < int(light_params.lights) && is_beside_mesh(place); ++light)
+    int lights = is_beside_mesh(place) ? int(light_params.lights) : 0;
+    for (int light = 0; light < lights; ++light)
         glow += received(place, light) * draw_params.light_color[light].rgb;
     cell[slot].glow = vec4(glow * draw_params.mesh_color.rgb, 0.0);
 }

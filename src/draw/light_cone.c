@@ -54,26 +54,27 @@ void cone_find_terms(ConeTerms *terms, const FibreLobes *lobes, float blur, floa
 {
     double albedo[3][3], b = (double)blur, w = (double)wide;
     for (int p = 0; p < 3; ++p) find_albedos(lobes, p, albedo[p]);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
+        // A scale so that K has the mean 1 over all ways.
+        const double met = (double)CONE_MET, all = find_left(lobes, albedo, c, 0, 0),
+                     unit = (1 - met * all) / fmax(all * all, 1e-12);
         for (int l = 0; l < CONE_DEGREES; ++l) {
-            double met = (double)CONE_MET, scale = 0, grid = 0;
+            double grid = 0;
             for (int row = CONE_LAST; row >= 0; --row) {
                 bool is_grid = row == CONE_LAST;
                 double spread = row * (double)CONE_STEP, tilts = SPREAD * spread * spread,
                        from = is_grid ? b : tilts, between = is_grid ? 2 * b : tilts,
                        to = is_grid ? b : 0,
-                       all = find_left(lobes, albedo, c, 0,
-                                       0), // the scale makes the mean over all ways 1
-                    left = find_left(lobes, albedo, c, l, from + w) *
-                           find_left(lobes, albedo, c, l, to) /
-                           (1 - met * find_left(lobes, albedo, c, l, between));
-                scale = (2 * l + 1) * (1 - met * all) / fmax(all * all, 1e-12);
+                       left = find_left(lobes, albedo, c, l, from + w) *
+                              find_left(lobes, albedo, c, l, to) /
+                              (1 - met * find_left(lobes, albedo, c, l, between));
                 if (is_grid) grid = left;
                 // After the second row the grid's light takes over step by step.
                 double own = fmin((double)(CONE_LAST - row) / (CONE_LAST - 1), 1);
-                terms->left[row][c][l] = (float)(scale * (grid + own * (left - grid)));
+                terms->left[row][c][l] = (float)((2 * l + 1) * unit * (grid + own * (left - grid)));
             }
         }
+    }
 }
 
 void cone_find_rows(const ConeTerms *terms, const ConeView *view, const float tangent[3],

@@ -29,7 +29,8 @@ void light_grid_make_slots(LightGridState *state)
     state->item_count = sum;
     state->active = state->filled;
     for (int f = 0; f < state->filled; ++f) {
-        int c = state->cell_of[f], at[3] = {c % n[0], c / n[0] % n[1], c / (n[0] * n[1])};
+        int at[3];
+        grid_place(state, f, at);
         for (int q = 0; q < 27; ++q) {
             int x = at[0] + q % 3 - 1, y = at[1] + q / 3 % 3 - 1, z = at[2] + q / 9 - 1;
             if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) continue;

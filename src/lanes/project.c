@@ -12,11 +12,9 @@
 
 #include <stdlib.h>
 
-enum {
-    BESIDE = W, // spare room behind a strand's last point, so loops may run past it
-    MOST_SHARE =
-        16 // of a strand: a ribbon of more than 1 px has at most 1 / MOST_SHARE of its parts
-};
+enum { BESIDE = W }; // spare room behind a strand's last point, so loops may run past it
+// A ribbon of more than 1 px has at most 1 / MOST_SHARE of its strand's parts.
+enum { MOST_SHARE = 16 };
 
 // A point of each strand of a tile.
 typedef struct Row {

@@ -346,6 +346,20 @@ static double sum_onto(const Ball *ball, const float x[3], const float sun[3])
     return sum;
 }
 
+static const uint32_t PLATE[2][3] = {{0, 1, 2}, {2, 1, 3}};
+
+// A level plate of 2 m x 2 m at the height y; the blocks keep `vertices`.
+static LightBlocks lay_plate(float vertices[4][3], float y)
+{
+    for (int v = 0; v < 4; ++v)
+        memcpy(vertices[v], (float[3]){v & 1 ? 1 : -1, y, v & 2 ? 1 : -1}, sizeof vertices[v]);
+    return (LightBlocks){.mesh = {.vertices = (const float(*)[3])vertices,
+                                  .triangles = PLATE,
+                                  .vertex_count = 4,
+                                  .triangle_count = 2,
+                                  .rotation = {0, 0, 0, 1}}};
+}
+
 // Against the sum over all segments, where hair is so thin that light is scattered once. The plate
 // lies oblique to the cells, whose walls are steps that catch light. So the mean over the middle of
 // the plate is too dark: measured 0.89, 0.99 and 0.83 for the three suns. A very weak sun gives the
@@ -353,7 +367,6 @@ static double sum_onto(const Ball *ball, const float x[3], const float sun[3])
 static void hair_sends_light_onto_skin(void **state)
 {
     (void)state;
-    static const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
     static const float suns[][3] = {{0, 1, 0}, {0.6f, 0.8f, 0}, {0, 0.6f, -0.8f}, {0, 1, 0}},
                        strength[] = {1, 1, 1, 1e-9f};
     static const double least[] = {0.86, 0.96, 0.80, 0.86};
@@ -363,13 +376,7 @@ static void hair_sends_light_onto_skin(void **state)
         float vertices[4][3];
         const float y = -0.06f;
         double found = 0, expected = 0;
-        for (int v = 0; v < 4; ++v)
-            memcpy(vertices[v], (float[3]){v & 1 ? 1 : -1, y, v & 2 ? 1 : -1}, sizeof vertices[v]);
-        LightBlocks blocks = {.mesh = {.vertices = (const float(*)[3])vertices,
-                                       .triangles = triangles,
-                                       .vertex_count = 4,
-                                       .triangle_count = 2,
-                                       .rotation = {0, 0, 0, 1}}};
+        LightBlocks blocks = lay_plate(vertices, y);
         ball->hair.caster.material.radius = 1e-5f; // optical depth 0.02
         ball->scene.blocks = &blocks;
         ball->scene.skin = true;
@@ -404,18 +411,11 @@ static void hair_sends_light_onto_skin(void **state)
 // hair that is too thin to matter. The plate reflects half of the light.
 static double find_reflected(Ball *ball)
 {
-    static const uint32_t triangles[2][3] = {{0, 1, 2}, {2, 1, 3}};
     const float y = -0.06f;
     float vertices[4][3];
     LightGrid grid = {0};
     double sum = 0, weights = 0;
-    for (int v = 0; v < 4; ++v)
-        memcpy(vertices[v], (float[3]){v & 1 ? 1 : -1, y, v & 2 ? 1 : -1}, sizeof vertices[v]);
-    LightBlocks blocks = {.mesh = {.vertices = (const float(*)[3])vertices,
-                                   .triangles = triangles,
-                                   .vertex_count = 4,
-                                   .triangle_count = 2,
-                                   .rotation = {0, 0, 0, 1}}};
+    LightBlocks blocks = lay_plate(vertices, y);
     for (int k = 0; k < 3; ++k) ball->draw.mesh_color[k] = 0.5f;
     ball->hair.caster.material.radius = 1e-7f;
     ball->scene.blocks = &blocks;
@@ -543,8 +543,6 @@ typedef struct Clumps {
     LightBlocks blocks;
     LightGrid grid;
 } Clumps;
-
-static const uint32_t PLATE[2][3] = {{0, 1, 2}, {2, 1, 3}};
 
 static void open_clumps(Clumps *clumps)
 {
