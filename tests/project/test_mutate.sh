@@ -107,6 +107,9 @@ int f(int a, int b) {
     print("1 < 2, /* + */", 'a'); /* 3 > 4
     5 == 6 */
     skip(me);
+    things_destroy(me);
+    assert(a < 7);
+    float room[8];
     return max(a, b);
 }
 END
@@ -115,13 +118,45 @@ printf 'all:\n\t@:\n' >"$tree/Makefile"
 list "$first" '- z = 3' '+ z = 4' 'gap: nobody looks.'
 run 0 --random 80 --list; cp "$work/out" "$work/all"
 for fault in "a <= b" "2 + g(a, b)" "1 - g(a, b)" "g(b, a)" "!(a < b)" "1 == 1" "return min(a, b)" "skip(me);  ->  ;" "f = 1.1;"; do says "$fault"; done
-for no in "X (" "a < b + 2" "2 < 2" "4 >" "max(b, a)" "int b, int a"; do
+for no in "assert" "room[9]" "X (" "a < b + 2" "2 < 2" "4 >" "max(b, a)" "int b, int a"; do
     if grep -qF -- "->  ${no}" "$work/all" || grep -- '->' "$work/all" | sed 's/.*->//' | grep -qF -- "$no"; then bad "made '$no'"; else good; fi
 done
 run 0 --random 80 --list; equal "$work/out" "$work/all"
 run 0 --random 5 --seed 9 --list; if [ "$(grep -c '  ->  ' "$work/out")" = 5 ]; then good; else bad "not five faults"; fi
 run 0 --random 9 --only 'run/c' --least 50 --limit 2; says "caught"; says "src/run"; says "all:"
 run 0 --random 80 --only 'w = 5' --least 0 --limit 2; says "survived: src/base/a.c:4"; says "    - w = 5;"
+if grep -q -- 'things_destroy.*->  ;' "$work/all"; then bad "skips what only frees memory"; else good; fi
+
+claim "a random fault is given only to tests that run its line"
+rm "$tree"/src/run/* "$tree"/tests/run/*
+cat >"$tree/src/run/d.c" <<'END'
+int f(int a);
+int g(int a);
+int f(int a)
+{
+    return a + 3;
+}
+int g(int a)
+{
+    return a - 4;
+}
+END
+for name in f g; do
+    printf 'int %s(int a);\nint main(void) { return %s(9) / 100; }\n' $name $name >"$tree/tests/run/test_$name.c"
+done
+printf 'int g(int a);\nint main(void) { return g(9) != 5; }\n' >"$tree/tests/run/test_exact.c"
+cat >"$tree/Makefile" <<'END'
+all:
+	@:
+out/release/tests/run/%: tests/run/%.c src/run/d.c
+	@mkdir -p out/release/run out/release/tests/run
+	@$(CC) $(CFLAGS) -c -o out/release/run/d.o src/run/d.c
+	@$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $< out/release/run/d.o
+END
+run 1 --random 60 --seed 3 --only 'src/run' --limit 2
+says "survived  src/run/d.c:5: return a + 3;  ->  return a - 3;: 1 of 3 tests run its line"
+says "caught    src/run/d.c:9: return a - 4;  ->  return a + 4;: by test_exact"
+says "| \`src/run\` |"
 rm -r "$tree/src/run" "$tree/tests/run"
 
 claim "lists that do not fit, and wrong options"
