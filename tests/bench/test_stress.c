@@ -111,6 +111,13 @@ static void the_bound_is_as_tight_as_can_be(void **state)
     // Hair that nothing moves has no energy to lose.
     verdict = verdict_of("hybrid", "", "gravity=0", 200);
     assert_true(verdict.worst[STRESS_ENERGY] < 1e-3);
+    // Nor has hair that hangs straight down (tilt=0; rest=1: its groom holds no gravity).
+    static const char *const HANGING[] = {"rest=1 tilt=0 length=0.01", "rest=1 tilt=0",
+                                          "rest=1 tilt=0 length=2"};
+    for (int i = 0; i < 3; ++i) {
+        verdict = verdict_of("hybrid", "", HANGING[i], 200);
+        assert_true(verdict.worst[STRESS_ENERGY] < 1e-3);
+    }
 }
 
 // The bound allows the energy of a kick of the head and no more.

@@ -28,6 +28,8 @@ run 1 $a $b --max-flip 0.01
 run 1 $a $b --max-flip 0.9 --max-failing-pixels 1
 
 claim "wrong usage is status 2 and one line"
+run 2 $a $a --json - --html -; one_line; says "2 reports to standard output: expected at most one"; silent out
+run 2 $a $a --json - --junit - --html -; one_line; says "3 reports to standard output"; silent out
 for words in "" "$a" "$a $b $other" "--max-flip 2 $a $b" "--max-flip x $a $b" "--max-failing-pixels 1.5 $a $b" "--max-failing-pixels 101% $a $b" \
     "--max-failing-pixels -1 $a $b" "--pixel-tolerance 300 $a $b" "--ppd 0 $a $b" "-j 0 $a $b" "--jobs 1.5 $a $b" "--json= $a $b" "--bogus $a $b" \
     "$a $b --max-flip" "$golden $a" "--help=webpage" "--pixel-tolerance nan $a $b"; do

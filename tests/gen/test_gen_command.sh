@@ -73,6 +73,11 @@ run 0 fur "$work/flat.obj" -n 9 --unit 0.01 --up z --format text -o "$work/flat.
 if awk '/^strand/ { root = NR + 1 } NR == root && ($2 < 0.00009 || $2 > 0.00011 || $1 < 0 || $1 > 1 || $3 > 0) { wrong = 1 } END { exit wrong }' \
     "$work/flat.tfx"; then good; else bad "roots elsewhere"; fi
 
+claim "of more clumps than strands, each strand is one"
+run 0 fur assets/ball.obj -n 40 --clumps 40 --clump 0.7 -o "$work/each.tfx"
+run 0 fur assets/ball.obj -n 40 --clumps 2000000 --clump 0.7 -o "$work/more.tfx"
+equal "$work/more.tfx" "$work/each.tfx"
+
 claim "bad meshes and maps are refused in a line"
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >"$work/line.obj"
 printf 'v 0 0 0\n' >"$work/empty.obj"

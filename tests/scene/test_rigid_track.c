@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Motion of the head by keys and by formulas.
+// Motion of the head by keys, formulas and samples.
 #include "scene/rigid_track.h"
 #include "support/head_formulas.h"
 
@@ -132,6 +132,32 @@ static void formulas_move_in_metres_and_turn_in_degrees(void **state)
     rigid_track_destroy(&track);
 }
 
+// A body that flies and turns by samples, while its track turns and moves it: the samples' motion
+// comes first.
+static void samples_come_before_the_keys(void **state)
+{
+    (void)state;
+    const double half = sqrt(0.5);
+    RigidMotion motions[] = {{{0, 0, 0, 1}, {0, 0, 0}}, {{0, 0, half, half}, {1, 0, 0}}};
+    const RigidSamples samples = {.times = {.count = 2, .rate = 1}, .motion = motions};
+    RigidTrack track = {.samples = &samples};
+    assert_false(rigid_track_is_still(&track));
+    float moved[3];
+    move(&track, 0, (const float[3]){1, 2, 3}, moved);
+    assert_at(moved, 1, 2, 3);
+    for (int time = 1; time < 5; time += 3) { // the last sample applies afterwards, too
+        move(&track, time, (const float[3]){1, 2, 3}, moved);
+        assert_at(moved, -1, 1, 3);
+    }
+    Error error;
+    const float shift[3] = {10, 0, 0};
+    turn_to(&track, 0, 0, PI, 0);
+    assert_int_equal(keyframes_append(&track.translation.keys, 0, shift, 3, &error), RESULT_OK);
+    move(&track, 1, (const float[3]){1, 2, 3}, moved); // -1, 1, 3 turned about y and shifted
+    assert_at(moved, 11, 1, -3);
+    rigid_track_destroy(&track);
+}
+
 static void a_formula_that_fails_somewhere_is_reported_and_cut(void **state)
 {
     (void)state;
@@ -174,6 +200,7 @@ int main(void)
         cmocka_unit_test(turns_of_more_than_half_a_circle_are_made_as_written),
         cmocka_unit_test(only_two_keys_of_either_kind_move),
         cmocka_unit_test(formulas_move_in_metres_and_turn_in_degrees),
+        cmocka_unit_test(samples_come_before_the_keys),
         cmocka_unit_test(a_formula_that_fails_somewhere_is_reported_and_cut),
         cmocka_unit_test(what_is_no_formula_of_t_is_refused),
     };
