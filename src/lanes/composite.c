@@ -2,9 +2,10 @@
 // Composites ribbons in batches. The points of a batch are unpacked to arrays, and the cells that
 // each ribbon touches are listed. Then one loop runs over these touches; each lane of a vector is a
 // pixel of the cell. There are two such loops: the first finds how much of each ribbon is visible,
-// and closes cells that are full. Then the end points of visible ribbons are shaded, unless they
-// have been before. The second loop adds colours. The compiler vectorises the loops; the end of
-// this file says for which processors.
+// and closes cells that are full. When enough batches have been through it, the end points of
+// visible ribbons are shaded, unless they have been before, and the second loop adds colours. One
+// batch alone has too few visible points to fill the vectors of shading. The compiler vectorises
+// the loops; the end of this file says for which processors.
 #include "lanes/composite.h"
 
 #include "glsl/kernel/ribbon.h"
@@ -14,11 +15,13 @@
 #include <string.h>
 
 enum {
-    BATCH = 128,    // ribbons at a time
-    TOUCHES = 2048, // touches that are listed before they are drawn
-    USUAL = 2,      // cells that a ribbon usually touches in a row
-    WANTED = 2 * BATCH,
-    KNOWN = 1024, // slots of a hash table of wanted points
+    BATCH = 128,                          // ribbons at a time
+    TOUCHES = 2048,                       // touches that are listed before they are drawn
+    USUAL = 2,                            // cells that a ribbon usually touches in a row
+    LAID = TOUCHES + BLOCK_CELLS + USUAL, // visible touches that can wait for colours
+    WAITING = 8 * BATCH,                  // ribbons that can wait for colours
+    WANTED = 2 * WAITING,
+    KNOWN = 4096, // slots of a hash table of wanted points
 };
 
 // The share of a pixel's hair that may be skipped: fine hair must not vanish where each of its many
@@ -45,14 +48,12 @@ typedef struct Batch {
     Linear first_share, last_share;           // share of a pixel that each end does not cut off
     float half_width[BATCH], widening[BATCH]; // px: at the first end; change to the last end
     float inner[BATCH], outer[BATCH], factor[BATCH], curve[BATCH]; // see RibbonProfile
-    float first[3][BATCH], change[3][BATCH];                       // colour
     float near[BATCH], near_change[BATCH];                         // 1/w
     float middle[BATCH], slope[BATCH], reach[BATCH];               // the strip, in cells
     int top[BATCH], bottom[BATCH], left[BATCH], right[BATCH];      // cells
-    uint8_t seen[BATCH];
 } Batch;
 
-// A ribbon of the batch that touches a cell.
+// A ribbon, of the batch or of those that wait, that touches a cell.
 typedef struct Touch {
     uint16_t ribbon, cell;
 } Touch;
@@ -62,9 +63,19 @@ typedef struct __attribute__((aligned(32))) Laid {
     float alpha[CELL_PIXELS], along[CELL_PIXELS];
 } Laid;
 
+// Ribbons that wait for their colours, and what is visible of them.
+typedef struct Waiting {
+    Laid laid[LAID];
+    Touch touches[LAID];
+    uint8_t seen[WAITING];
+    uint32_t point[2][WAITING];                  // as in Batch
+    float first[3][WAITING], change[3][WAITING]; // colour
+    int count, ribbons;                          // of touches; of ribbons
+} Waiting;
+
 struct CompositeScratch {
-    Laid laid[TOUCHES + BLOCK_CELLS + USUAL];
     Touch touches[TOUCHES + BLOCK_CELLS + USUAL];
+    Waiting waiting;
     Batch batch;
     uint8_t open[BLOCK_CELLS + USUAL]; // cells that are not yet opaque
     uint8_t now[BLOCK_CELLS + USUAL];  // open cells in which this batch may be visible
@@ -203,7 +214,6 @@ SIMD_INLINE void unpack(const Block *block, bool solid, Batch *restrict b)
     for (int i = 0; i < BATCH; ++i) {
         b->widening[i] -= b->half_width[i];
         b->near[i] = b->near_at[1][i], b->near_change[i] = b->near_at[2][i] - b->near_at[1][i];
-        b->seen[i] = 0;
     }
     find_directions(b, &ways);
     find_lines(block, solid, &ways, b);
@@ -303,14 +313,14 @@ SIMD_INLINE int keep_nearest(const Batch *restrict b, int i, float x, float y, C
     return some | 2;
 }
 
-SIMD_INLINE void add_color(const Batch *restrict b, int i, BlockForm form,
+SIMD_INLINE void add_color(const Waiting *restrict w, int i, BlockForm form,
                            const Laid *restrict laid, Cell *restrict cell)
 {
     for (int k = 0; k < CELL_PIXELS; ++k) {
         float alpha = laid->alpha[k], along = laid->along[k],
-              red = b->first[0][i] + along * b->change[0][i],
-              green = b->first[1][i] + along * b->change[1][i],
-              blue = b->first[2][i] + along * b->change[2][i];
+              red = w->first[0][i] + along * w->change[0][i],
+              green = w->first[1][i] + along * w->change[1][i],
+              blue = w->first[2][i] + along * w->change[2][i];
         if (form == BLOCK_NEAREST) {
             cell->red[k] = alpha > 0 ? red : cell->red[k];
             cell->green[k] = alpha > 0 ? green : cell->green[k];
@@ -327,65 +337,79 @@ SIMD_INLINE void add_color(const Batch *restrict b, int i, BlockForm form,
 
 SIMD_INLINE void want(CompositeScratch *scratch, const Ribbons *ribbons, uint32_t point, int *count)
 {
-    uint32_t *known = &scratch->known[point * 2654435761u >> 22];
+    uint32_t *known = &scratch->known[point * 2654435761u >> 20];
     if (shades_find(ribbons->shader.shades, point) || *known == point) return;
     *known = point;
     scratch->wanted[(*count)++] = point;
 }
 
-// Shades the end points of visible ribbons that have no colours yet, and sets the ribbons' colours.
-SIMD_INLINE void shade(const Ribbons *ribbons, SimdLevel level, int size, CompositeScratch *scratch)
+// Shades the end points of waiting ribbons that have no colours yet, and sets the ribbons' colours.
+SIMD_INLINE void shade(const Ribbons *ribbons, SimdLevel level, CompositeScratch *scratch)
 {
-    Batch *b = &scratch->batch;
+    Waiting *w = &scratch->waiting;
     int wanted = 0;
     memset(scratch->known, 0xff, sizeof scratch->known);
-    for (int i = 0; i < size; ++i)
-        for (int end = 0; end < 2 && b->seen[i]; ++end)
-            __builtin_prefetch((const void *)&ribbons->shader.shades->points[b->point[end][i]], 0,
+    for (int i = 0; i < w->ribbons; ++i)
+        for (int end = 0; end < 2 && w->seen[i]; ++end)
+            __builtin_prefetch((const void *)&ribbons->shader.shades->points[w->point[end][i]], 0,
                                2);
-    for (int i = 0; i < size; ++i)
-        for (int end = 0; end < 2 && b->seen[i]; ++end)
-            want(scratch, ribbons, b->point[end][i], &wanted);
+    for (int i = 0; i < w->ribbons; ++i)
+        for (int end = 0; end < 2 && w->seen[i]; ++end)
+            want(scratch, ribbons, w->point[end][i], &wanted);
     shade_points_on[level](&ribbons->shader, scratch->wanted, wanted);
-    for (int i = 0; i < size; ++i) {
-        if (!b->seen[i]) continue;
-        uint64_t a = shades_find(ribbons->shader.shades, b->point[0][i]),
-                 z = shades_find(ribbons->shader.shades, b->point[1][i]);
+    for (int i = 0; i < w->ribbons; ++i) {
+        if (!w->seen[i]) continue;
+        uint64_t a = shades_find(ribbons->shader.shades, w->point[0][i]),
+                 z = shades_find(ribbons->shader.shades, w->point[1][i]);
         for (int c = 0; c < 3; ++c) {
-            b->first[c][i] = low_level((uint32_t)(a >> 16 * c));
-            b->change[c][i] = low_level((uint32_t)(z >> 16 * c)) - b->first[c][i];
+            w->first[c][i] = low_level((uint32_t)(a >> 16 * c));
+            w->change[c][i] = low_level((uint32_t)(z >> 16 * c)) - w->first[c][i];
         }
-        b->seen[i] = 0;
     }
 }
 
-SIMD_INLINE void draw(const Block *block, BlockForm form, const Ribbons *ribbons, SimdLevel level,
-                      int size, int count, CompositeScratch *scratch)
+// Adds the colours of all that waits, in the order in which it was laid.
+SIMD_INLINE void add_colors(const Block *block, BlockForm form, const Ribbons *ribbons,
+                            SimdLevel level, CompositeScratch *scratch)
 {
-    Touch *touches = scratch->touches;
+    Waiting *w = &scratch->waiting;
+    shade(ribbons, level, scratch);
+    for (int t = 0; t < w->count; ++t)
+        add_color(w, w->touches[t].ribbon, form, &w->laid[t], &block->cells[w->touches[t].cell]);
+    w->count = w->ribbons = 0;
+}
+
+// Lays the batch's touches. Colours are added first if what waits leaves no room for them.
+SIMD_INLINE void lay(const Block *block, BlockForm form, const Ribbons *ribbons, SimdLevel level,
+                     int count, CompositeScratch *scratch)
+{
     Batch *batch = &scratch->batch;
+    Waiting *w = &scratch->waiting;
     float least = ribbons->least_seen;
-    int laid = 0;
+    if (w->ribbons == WAITING || w->count + count > LAID)
+        add_colors(block, form, ribbons, level, scratch);
+    int first = w->ribbons, laid = w->count;
+    for (int end = 0; end < 2; ++end)
+        memcpy(&w->point[end][first], batch->point[end], sizeof batch->point[end]);
+    memset(&w->seen[first], 0, BATCH);
     for (int t = 0; t < count; ++t) {
-        int i = touches[t].ribbon, c = touches[t].cell;
+        int i = scratch->touches[t].ribbon, c = scratch->touches[t].cell;
         float x = (float)(c % BLOCK_CELLS_ACROSS * CELL_WIDTH),
               y = (float)(c / BLOCK_CELLS_ACROSS * CELL_HEIGHT);
-        Laid *own = &scratch->laid[laid];
+        Laid *own = &w->laid[laid];
         int found = form == BLOCK_NEAREST
                         ? keep_nearest(batch, i, x, y, &block->cells[c], block->hidden[c], own)
                         : lay_under(batch, i, x, y, form, least, &block->cells[c], block->hidden[c],
                                     scratch->skipped[c], own);
-        touches[laid] = touches[t];
-        batch->seen[i] |= found & 1;
+        w->touches[laid] = (Touch){(uint16_t)(first + i), (uint16_t)c};
+        w->seen[first + i] |= found & 1;
         scratch->open[c] &= found >> 1;
         if (!(found & 1) && least > 0)
             for (int k = 0; k < CELL_PIXELS; ++k) scratch->skipped[c][k] += own->alpha[k];
         laid += found & 1;
     }
-    shade(ribbons, level, size, scratch);
-    for (int t = 0; t < laid; ++t)
-        add_color(batch, touches[t].ribbon, form, &scratch->laid[t],
-                  &block->cells[touches[t].cell]);
+    w->count = laid;
+    w->ribbons += BATCH;
 }
 
 // --- A block.
@@ -441,6 +465,7 @@ SIMD_INLINE void composite(const Block *block, BlockForm form, SimdLevel level,
 {
     memset(scratch->open, 1, sizeof scratch->open);
     memset(scratch->skipped, 0, sizeof scratch->skipped);
+    scratch->waiting.count = scratch->waiting.ribbons = 0;
     if (form == BLOCK_OVER_MESH) find_farthest(block, scratch->farthest);
     for (size_t done = 0; done < count; done += BATCH) {
         // Prefetches the next batch to the second-level cache; the first level can track fewer
@@ -457,10 +482,11 @@ SIMD_INLINE void composite(const Block *block, BlockForm form, SimdLevel level,
         for (int i = 0; i < size; ++i) {
             listed = list_touches(&scratch->batch, i, scratch->now, scratch->touches, listed);
             if (listed < TOUCHES && i < size - 1) continue;
-            draw(block, form, ribbons, level, size, listed, scratch);
+            lay(block, form, ribbons, level, listed, scratch);
             listed = 0;
         }
     }
+    add_colors(block, form, ribbons, level, scratch);
     if (ribbons->least_seen > 0 && form != BLOCK_NEAREST)
         fill_up(block, ribbons->least_seen, scratch);
 }
