@@ -66,9 +66,9 @@ SHARED_FUNCTION float caster_along(float size, float density, float slack)
     return SHARED_MAX(whole < dense ? whole + 1.0f : whole, 1.0f);
 }
 
-// The value that each point adds to a texel, in steps of which a fibre has `unit`. The segment's
-// area is width * size texels; its optical depth is fibre_depth. (own_layer_depth gives the
-// reason.)
+// The value that each point adds to a texel, in integer steps; `unit` steps are one fibre. The
+// segment's area is width * size texels; its optical depth is fibre_depth. (own_layer_depth gives
+// the reason.)
 SHARED_FUNCTION uint caster_part(float depth, float width, float size, float unit, float points)
 {
     float sum = SHARED_MAX(depth * width * size * unit, 0.0f);

@@ -5,8 +5,8 @@
 #pragma once
 #endif
 
-// Some strands represent all strands in the cells: of each group of `step` consecutive strands one,
-// chosen pseudo-randomly but always the same. Returns the number of such strands.
+// A subset of the strands represents all strands in the cells: one strand of each group of `step`
+// consecutive strands, chosen pseudo-randomly but always the same. Returns the size of the subset.
 SHARED_FUNCTION uint cell_strands(uint drawn, uint step)
 {
     return step < drawn ? drawn / step : 1u;
@@ -94,9 +94,9 @@ SHARED_FUNCTION float cell_facing(float nx, float ny, float nz, float x, float y
 // The largest share of a lamp's colour that a place receives.
 #define CELL_LAMP_MOST 1e3f
 
-// --- Orders of scattering. The light that hair meets falls by a factor from one order to the next,
-// and is assumed to go on falling by this factor. At most this share of the light may be left to
-// orders that are not swept.
+// --- Orders of scattering. The light that hair meets falls by a factor from one order to the next.
+// For the orders that are not swept, it is assumed to go on falling by this factor. These orders
+// may have at most this share of the light.
 #define CELL_LEFT_MOST 0.05f
 
 // The factor for a channel.

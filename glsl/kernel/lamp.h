@@ -28,8 +28,9 @@ SHARED_FUNCTION float lamp_around(float sky, float ground, float up)
     return ground + (0.5f + 0.5f * up) * (sky - ground);
 }
 
-// What an environment adds to the light between its sky and ground, which are its terms of 1 and y:
-// the terms of x, z, xy, yz, zx, x^2 - z^2 and 3 y^2 - 1 of the unit normal. First x and z.
+// The light of an environment is a polynomial of the unit normal. Its terms of 1 and y are `sky`
+// and `ground` of lamp_around. The next two functions add the other terms: x, z, xy, yz, zx, x^2 -
+// z^2 and 3 y^2 - 1. This one has x and z.
 SHARED_FUNCTION float lamp_aside(float by_x, float by_z, float x, float z)
 {
     return by_x * x + by_z * z;
@@ -43,9 +44,10 @@ SHARED_FUNCTION float lamp_bent(float xy, float yz, float zx, float level, float
            upright * (3.0f * y * y - 1.0f);
 }
 
-// The factor by which light on a surface of this colour grows because surfaces like it, which hide
-// all but the share `open` of its view and have its colour and brightness, reflect light on it. At
-// most 100: white surfaces that hide everything from each other would keep their light for ever.
+// The factor by which reflected light brightens a surface of this colour. The surface sees the
+// surroundings in the share `open` of its view. In the rest of its view it sees other surfaces,
+// which are assumed to have its own colour and brightness. At most 100, because white surfaces that
+// hide everything from each other would reflect their light for ever.
 SHARED_FUNCTION float lamp_between(float open, float color)
 {
     return 1.0f / SHARED_MAX(1.0f - color * (1.0f - open), 0.01f);

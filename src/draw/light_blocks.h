@@ -19,9 +19,9 @@ typedef struct LightMesh {
 
 typedef struct LightBlocks {
     LightMesh mesh;
-    // [3][cells], owned: 1 where light passes between the middle of the cell before (on each axis)
-    // and that of the cell, 0 where the mesh crosses that way: no chain of open ways leads through
-    // it
+    // [3][cells], owned. For an axis and a cell: 1 if light passes along the line from the middle
+    // of the cell before on this axis to the middle of this cell, 0 if the mesh cuts the line. No
+    // chain of open lines leads through the mesh.
     float *open;
     size_t room;
 } LightBlocks;

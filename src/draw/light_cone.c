@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: MIT
-// The lobe of d'Eon et al. (2011) is the mean over the azimuth of exp(w/v) on the sphere, w the
-// cosine of the angle from the mirrored direction. In the mean over the azimuth, a scattering by
-// parallel fibres so multiplies the light's Legendre series in the sine of the inclination by
-//     S_l = sum over R, TT, TRT of albedo_p exp(-l (l + 1) v_p / 2)
-// (the coefficients of a normal distribution on the sphere, which stand for those of exp(w/v)), and
-// the light of all orders from the second on is, P_l being Legendre polynomials,
-//     K(s, s') = sum over l of (2 l + 1) F_l G_l / (1 - q S_l) P_l(s) P_l(s').
-// F, S and G scatter from the lamp, between fibres and to the eye; q is CONE_MET; s and s' are the
-// sines at which light comes from the lamp and goes to the eye.
+// The lobe of d'Eon et al. (2011) is the mean over the azimuth of exp(w/v) on the sphere, where w
+// is the cosine of the angle from the mirrored direction. Average the light over the azimuth, and
+// write it as a Legendre series in the sine of its inclination. Then a scattering by parallel
+// fibres multiplies the coefficient of degree l by
+//     S_l = sum over R, TT, TRT of albedo_p exp(-l (l + 1) v_p / 2).
+// (The exponential is the coefficient of a normal distribution on the sphere, which stands for that
+// of exp(w/v).) The light of all orders from the second on is
+//     K(s, s') = sum over l of (2 l + 1) F_l G_l / (1 - q S_l) P_l(s) P_l(s')
+// where P_l are Legendre polynomials; F, S and G scatter from the lamp, between fibres and to the
+// eye; q is CONE_MET; s and s' are the sines at which light comes from the lamp and goes to the
+// eye.
 #include "draw/light_cone.h"
 
 #include "glsl/draw/draw.h"
 
 #include <math.h>
 
-// Narrower lobes are not followed: CONE_DEGREES would not resolve them.
+// Narrower lobes get this variance, because CONE_DEGREES terms would not resolve them.
 static const double LEAST_VARIANCE = 0.0027; // (3 degrees)^2
 
-// The tilts between fibres turn light off the cone. This share of their variance is added to F and
-// S; 1.5 follows if the tilts at both ends of a way are independent, 1.25 agreed best with
-// path-traced light.
+// Fibres that are tilted against each other scatter light off the cone. The variance of the
+// tangents times this factor is added to the lobes of F and S. The factor would be 1.5 if the tilts
+// at both ends of a way were independent; 1.25 agreed best with path-traced light.
 static const double SPREAD = 1.25;
 
-// The shares of the lobe p that a fibre scatters of light square to it.
+// The share of perpendicular light that a fibre scatters in the lobe p, by channel.
 static void find_albedos(const FibreLobes *lobes, int p, double albedo[3])
 {
     for (int c = 0; c < 3; ++c) {
@@ -36,8 +38,8 @@ static void find_albedos(const FibreLobes *lobes, int p, double albedo[3])
     }
 }
 
-// One factor of the series: the variance `extra` is added to each lobe. A tilt of the lobe counts
-// as variance, too.
+// The factor by which one scattering multiplies the coefficient of this degree. The variance
+// `extra` is added to each lobe. The tilt of a lobe counts as variance, too.
 static double find_left(const FibreLobes *lobes, double albedo[3][3], int c, int degree,
                         double extra)
 {
@@ -55,7 +57,7 @@ void cone_find_terms(ConeTerms *terms, const FibreLobes *lobes, float blur, floa
     double albedo[3][3], b = (double)blur, w = (double)wide;
     for (int p = 0; p < 3; ++p) find_albedos(lobes, p, albedo[p]);
     for (int c = 0; c < 3; ++c) {
-        // A scale so that K has the mean 1 over all ways.
+        // `unit` scales K so that its mean over all directions is 1.
         const double met = (double)CONE_MET, all = find_left(lobes, albedo, c, 0, 0),
                      unit = (1 - met * all) / fmax(all * all, 1e-12);
         for (int l = 0; l < CONE_DEGREES; ++l) {
@@ -69,7 +71,8 @@ void cone_find_terms(ConeTerms *terms, const FibreLobes *lobes, float blur, floa
                               find_left(lobes, albedo, c, l, to) /
                               (1 - met * find_left(lobes, albedo, c, l, between));
                 if (is_grid) grid = left;
-                // After the second row the grid's light takes over step by step.
+                // From the third row on, the light by exact lobes is mixed with the grid's: its
+                // share is 3/4, 1/2, 1/4 and 0.
                 double own = fmin((double)(CONE_LAST - row) / (CONE_LAST - 1), 1);
                 terms->left[row][c][l] = (float)((2 * l + 1) * unit * (grid + own * (left - grid)));
             }

@@ -16,15 +16,15 @@ typedef struct ConeView {
 
 enum { CONE_DEGREES = 64 };
 
-// By row, channel and degree: what is left of light on its way from the lamp to the eye.
+// The coefficients of the series in light_cone.c, by row, channel and degree.
 typedef struct ConeTerms {
     float left[CONE_ROWS][3][CONE_DEGREES];
 } ConeTerms;
 
-// `blur`: the variance that the grid adds to the lobes from lamps and to the eye, and twice to
-// those between fibres; `wide`: ConeView.to_light[3].
+// `blur`: the variance (rad^2) that the grid adds to the lobes from lamps and to the lobes towards
+// the eye; it adds twice this variance to the lobes between fibres. `wide`: ConeView.to_light[3].
 void cone_find_terms(ConeTerms *terms, const FibreLobes *lobes, float blur, float wide);
 
-// The light of fibres with the unit tangent; 4th number unused.
+// The light that fibres with this unit tangent show, for each row; the 4th number is unused.
 void cone_find_rows(const ConeTerms *terms, const ConeView *view, const float tangent[3],
                     float rows[CONE_ROWS][4]);

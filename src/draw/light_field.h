@@ -63,8 +63,8 @@ void light_field_destroy(LightField *field);
 // Place the cells. light_field_find_turn finds the lattice's axes. light_field_set_box finds the
 // cells from the hair's box in these axes (lowest place along each axis, highest (m), square of the
 // longest segment), with `cells` along its longest side; it returns false if the box is empty. The
-// side of a cell changes in eighths of octaves and the corner by whole cells, so that light does
-// not swim from frame to frame.
+// side of a cell changes in steps of a factor of 2^(1/8) and the corner by whole cells, so that
+// light does not swim from frame to frame.
 void light_field_find_turn(LightField *field, const GridScene *scene);
 bool light_field_set_box(LightField *field, int cells, const float box[LIGHT_BOX_WORDS]);
 

@@ -33,14 +33,14 @@ bool light_frame_place(const LightView *view, const double x[3], double place[3]
 typedef struct LightFrame {
     double rows[4][4]; // by which (x, y, z, 1) becomes (u w, v w, depth, w): u and v in texels of
                        // the map, depth 0..1
-    double texel;      // m; before a lamp m at a depth of one metre
-    double depth[2];   // m, that are 0 and 1
+    double texel;      // side of a texel: m; for a lamp, m at a depth of one metre
+    double depth[2];   // m: depths that the map stores as 0 and 1
 } LightFrame;
 
 // The window around `box` (lowest u, v, depth, then the highest, as in LightView), in a map of
-// `side` texels of which `margin` stay free at each edge. The window's size changes in eighths of
-// octaves and its middle by whole texels, so that shadows do not swim from frame to frame. Depths
-// are linear. Their range is the box's and some more, also in steps.
+// `side` texels of which `margin` stay free at each edge. The window's size changes in steps of
+// a factor of 2^(1/8) and its middle by whole texels, so that shadows do not swim from frame to
+// frame. Depths are linear. Their range is a little larger than the box and also changes in steps.
 LightFrame light_frame_steady(const LightView *view, const double box[6], int side, int margin);
 
 // The same window with depths as OpenGL draws them: for a lamp they are linear on the screen.

@@ -33,7 +33,7 @@ typedef struct GridScene {
     int map_of[MAX_LIGHTS]; // map of each light; -1: it casts no shadow
     LightBlocks *blocks;    // how the mesh blocks light within the box of hair; NULL: no mesh
     bool skin;              // also find the light that hair sends onto the mesh
-    bool suns;              // also the light of lights is followed, not only that of the sky
+    bool suns;              // also follow the light of lights, not only that of the sky
     uint32_t step; // one strand of each group of this many represents them in the cells; 0: 1
     int cells;     // along the longest side of the box, 4 .. 64
     int orders;    // number of swept orders of scattering at most, 0 .. 32; 0: only direct light of

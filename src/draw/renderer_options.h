@@ -42,8 +42,9 @@ typedef struct RendererOptions {
     ImageKind kind;       // of the images
     Aov aov;              // auxiliary image that replaces light, on black (docs/look.md)
     float depth_range[2]; // AOV_DEPTH: m that are shown as 1 and as 0; if equal: depths in m
-    int samples; // 1, 2 or 4: a pixel is the mean of samples x samples samples with separate lists;
-                 // 0: 1. AOVs of the nearest ribbon have one sample
+    int samples; // 1, 2 or 4 along each axis of a pixel, which is the mean of its samples; each
+                 // sample has its own list of fragments; 0: 1. AOVs of the nearest ribbon have one
+                 // sample
     uint32_t seed; // of random variations by strand
     ShadowOptions shadow;
     ScatterOptions scatter; // needs deep shadow maps
@@ -52,8 +53,8 @@ typedef struct RendererOptions {
     LodOptions lod;
     Oit oit; // how the fragments of a pixel are blended; auto: abuffer. Others than auto make
              // raster auto choose quads
-    float least_seen;    // blocks: ribbons are shaded only if this share of a pixel is visible of
-                         // them, 0 .. 0.5
+    float least_seen;    // blocks: a ribbon is shaded only if it is visible in at least this share
+                         // of a pixel, 0 .. 0.5
     float ribbon_length; // blocks: longest ribbon in samples' px for which points of a strand are
                          // left out, 0 .. 64
     int oit_layers;      // abuffer: number of layers in order, 1 .. 64; 0: 8, with two samples 16
@@ -91,20 +92,21 @@ typedef struct RenderFrame {
     const Ambient *ambient;    // NULL: white
     float head_rotation[4];    // quaternion x y z w: the mesh's frame -> world
     float head_translation[3]; // m
-    uint64_t revision; // another one wherever hair has moved, so that shadows are kept; 0: it has
+    uint64_t revision; // changes whenever hair moves; shadows are kept while it stays the same and
+                       // is not 0
 } RenderFrame;
 
 // Counts of the last image, for the statistics.
 typedef struct RendererCounts {
-    uint64_t segments; // sent to the rasteriser; straight runs count as one
-    uint64_t culled;   // strands outside the image, which cost no drawing
-    uint64_t hidden;   // strands behind mesh or floor that were not drawn
-    uint64_t
-        fragments; // stored and blended: pixels of a ribbon; with blocks and compute blocks of it
+    uint64_t segments;  // sent to the rasteriser; straight runs count as one
+    uint64_t culled;    // strands outside the image, which cost no drawing
+    uint64_t hidden;    // strands behind mesh or floor that were not drawn
+    uint64_t fragments; // stored and blended: with quads pairs of a ribbon and a pixel; with blocks
+                        // and compute pairs of a ribbon and a block or tile of pixels
     uint64_t pool_bytes; // of the A-buffer or the lists now
     uint32_t
         redraws;    // bands that were drawn again because the A-buffer or the lists were too small
     uint32_t bands; // horizontal bands that the image was drawn in
-    uint64_t thinned;     // strands that others represent because of their distance
-    uint32_t shadow_maps; // that were made; those of the image before may have done
+    uint64_t thinned;     // strands that are left out by level of detail
+    uint32_t shadow_maps; // maps made for this image; 0 if those of the last image are reused
 } RendererCounts;

@@ -45,10 +45,12 @@ typedef struct ShadowFrames {
     // The lights that cast shadows.
     LightView views[SCENE_MAX_LIGHTS];
     int lights[SCENE_MAX_LIGHTS], count;
-    // Sums over all hair: number of particles, their radii and opacities; and upper bounds of what
-    // segments add to a texel: of hair with its material's width, of that times its diameter, and
-    // of other hair.
-    double particles, radius, opacity, plain, plain_width, painted;
+    double particles, radius, opacity; // sums over all hair: the number of particles, their radii
+                                       // and their opacities
+    // Upper bounds of what all segments together add to a texel. `plain`: hair that has the width
+    // of its material; `plain_width`: the same, with each segment multiplied by its diameter (m);
+    // `painted`: hair with other widths.
+    double plain, plain_width, painted;
     // Set by shadow_frames_place.
     ShadowParams params;
     CastParams casts[MAX_LIGHTS]; // how hair is drawn into each map

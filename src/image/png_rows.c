@@ -29,8 +29,8 @@ static void subtract(uint8_t *to, const uint8_t *a, const uint8_t *b, size_t cou
     for (; i < count; ++i) to[i] = (uint8_t)(a[i] - b[i]);
 }
 
-// Writes row y of `row` bytes as its filter type, then the difference of its big-endian bytes to
-// those of the row above.
+// Writes row y, which has `row` bytes: first the filter type, then the difference between each byte
+// (in big-endian order) and the byte above it.
 static void filter_row(const Image *image, int y, size_t row, uint8_t *to)
 {
     bool swapped = image->kind == IMAGE_16 && htobe16(1) != 1;

@@ -12,6 +12,6 @@
 // short or ISA-L refuses; `packed` is then empty.
 bool png_rows_pack(const Image *image, Bytes *packed);
 
-// Packs an IMAGE_8 with 1 channel, indices of a palette, as small as possible: no filter makes them
-// smaller, so the rows are unfiltered. As above otherwise.
+// Packs an IMAGE_8 with 1 channel, whose values are indices of a palette, as small as possible. The
+// rows are unfiltered, because no filter makes such files smaller. Otherwise like png_rows_pack.
 bool png_rows_pack_indices(const Image *image, Bytes *packed);

@@ -204,7 +204,7 @@ SIMD_INLINE void fill_source(const LightGridState *state, const GridScene *scene
         memcpy(grid_source(state, g, f), source + g * GROUP_WIDE, GROUP_WIDE * sizeof *source);
 }
 
-// All of a cell's part in the cone of its lamps' light but the ambient light (light_grid_gather.c).
+// Fills in a cell's GridCone, except for the ambient part, which light_grid_gather.c finds.
 static void fill_cone(const LightGridState *state, const CellSum *sum,
                       const float passed[MAX_LIGHTS], float spread, int f)
 {
@@ -323,7 +323,8 @@ static float find_received(const CellFill *fill, int slot, const int cell[3], in
                                                light_field_nearest(lattice, to_light), 0, 40));
 }
 
-// The light of all lights that the mesh reflects in a cell, before any is scattered.
+// The light that the mesh in a cell reflects after it has come directly from the lights; the light
+// that it reflects after a scattering is found by light_grid_scatter.
 SIMD_INLINE void fill_glows(const CellFill *fill, int part)
 {
     const LightGridState *state = fill->state;

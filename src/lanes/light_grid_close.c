@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-// The light that hair met in the last order but one, and in the last.
+// The light that hair met in the last order but one ([0]) and in the last order ([1]).
 static void find_met(const LightGridState *state, int channel, float met[2])
 {
     for (int k = 0; k < 2; ++k) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Work for one position of the eye before light_grid_show.h reads the light: finds cells that lie
-// so deep in hair that they are hardly visible and get their mean light, finds the ambient part of
-// the others' light, and makes room for the light that cells show.
+// Work for one position of the eye before light_grid_show.h reads the light. Finds the cells that
+// lie so deep in hair that they are hardly visible; their mean light is enough. Finds the ambient
+// part of the light of cells with hair. Makes room for the light that cells show.
 #include "lanes/light_grid_show.h"
 
 #include "base/room.h"
@@ -34,7 +34,7 @@ static bool is_hidden(const Gather *gather, int slot)
     return light_grid_behind(state, cell, way, gather->ordinate, 2, most) > most;
 }
 
-// The ambient part of a cell's light beside the lamps'; `mean`: its mean light.
+// Finds the ambient part of a cell's light (kernel/cone.h). `mean`: the cell's mean light.
 static void find_around(const Gather *gather, int f, const float mean[3])
 {
     const LightGridState *state = gather->state;

@@ -25,8 +25,8 @@ SIMD_INLINE void grid_turn_tangents(const float eye[3], const float axis[3],
 }
 
 // The place of 16 points among cells and tangents. For each axis: the cells before and behind each
-// point, as their part of a cell's number, and their weights. Then the number of the point's own
-// cell, and the place of its tangent in its patch.
+// point, as the part of the cell's number that belongs to this axis, and their weights. Then the
+// number of the point's own cell, and the place of its tangent in its patch.
 typedef struct GridPlaces {
     int cell[3][2][STRAND_TILE], own[STRAND_TILE];
     float share[3][2][STRAND_TILE];
@@ -77,8 +77,8 @@ SIMD_INLINE GridColor grid_cone_row(const float (*nodes)[CONE_ROWS][4], int row,
     return a + v * (c - a);
 }
 
-// Brings the light that point i shows back to the cone of its lamps' light. `cone`: the sum over
-// the cells around it.
+// Multiplies the light that point i shows by the factor of kernel/cone.h. `cone`: the sum over the
+// cells around the point.
 SIMD_INLINE void grid_narrow(const LightGridState *state, int kind, const GridCone *cone,
                              const GridPlaces *places, int i, float seen[3])
 {

@@ -48,11 +48,12 @@ typedef struct GridPatches {
     size_t of_room;
 } GridPatches;
 
-// What a cell adds to the cone of its lamps' light (kernel/cone.h), each times its area.
+// The correction of a cell's light (kernel/cone.h). Numbers are multiplied by the area of the
+// cell's hair, because they are added up over the cells around a point.
 typedef struct GridCone {
     float lit[MAX_LIGHTS]; // area that each light reaches
     float around[3];       // cone_around
-    float spread;          // rad, of tangents
+    float spread;          // rad, of tangents, times area
     float area;
     float unused[3];
 } GridCone;
@@ -89,7 +90,7 @@ typedef struct LightGridState {
     float *planes;   // [groups][3][plane]: two slices, and rows
     size_t plane;    // floats
     GridSpan *spans; // [groups][slices][rows]: cells that a sweep visits, see light_grid_spans.c
-    bool closing;    // the light of further orders is extrapolated
+    bool closing;    // the light of orders that are not swept is extrapolated
     double sums[2][ORDINATE_GROUPS][3]; // of the last two orders, see light_grid_sweep
 
     bool lights_skin;                    // sent, onto: the light that hair sends onto skin
@@ -178,8 +179,8 @@ bool light_grid_find_spans(LightGridState *state);
 // with `fresh` begins `light`. light_grid_scatter makes the source of the next order.
 void light_grid_sweep(LightGridState *state, bool sky, bool fresh);
 void light_grid_scatter(LightGridState *state);
-// Adds the light of the last order that reaches hair to `all`. Returns whether light_grid_close
-// would have to extrapolate too much of the light.
+// Adds the light of the last swept order that reaches hair to `all`. Returns whether another order
+// must be swept, because light_grid_close would have to extrapolate too much of the light.
 bool light_grid_needs_more(const LightGridState *state, float all[3]);
 // Sums the light of all orders; with `further` also of the orders after the last one.
 void light_grid_close(LightGridState *state, bool further);
