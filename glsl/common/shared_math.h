@@ -95,6 +95,14 @@ SHARED_FUNCTION float tone_filmic(float c)
            (c * (FLOAT(FILMIC_C) * c + FLOAT(FILMIC_D)) + FLOAT(FILMIC_E));
 }
 
+// A tone-mapped colour over a plain background, of which `share` is seen. A display cannot show
+// more than white, so the colour is clipped before it is mixed, as in a transparent image.
+SHARED_FUNCTION float tone_over(float shown, float background, float share)
+{
+    shown = SHARED_MIN(shown, 1.0f);
+    return shown + share * (background - shown);
+}
+
 // --- sRGB (IEC 61966-2-1): value = SRGB_SLOPE linear up to SRGB_KNEE, then
 // (1 + SRGB_OFFSET) linear^(1 / SRGB_POWER) - SRGB_OFFSET.
 #define SRGB_KNEE     0.0031308 // linear

@@ -50,7 +50,7 @@ float inverse_distance_behind(ivec2 p)
 void store(ivec2 p, vec4 light)
 {
 #if KIND < 2
-    light.rgb = display_from_linear(light.rgb * (1.0 / max(light.a, 1e-6)));
+    light = displayed(light);
     light = floor(clamp(light, 0.0, 1.0) * LEVELS + 0.5) * (1.0 / LEVELS);
 #endif
     imageStore(picture, p, light);

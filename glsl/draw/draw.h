@@ -126,7 +126,8 @@ UNIFORM_BLOCK(DrawParams, draw_params, BIND_DRAW)
     vec4 sky, ground;             // linear RGB of the ambient light from above, from below
     vec4 around[AROUND_TERMS]; // linear RGB: see lamp_bent; w of the first: 1 with an environment,
                                // of the next three: the environment's first axis
-    vec4 background;           // linear RGB, premultiplied; opacity
+    vec4 background;           // light behind everything: linear RGB, premultiplied; opacity
+    vec4 backing;              // colour under the tone-mapped picture: linear RGB; 1, or 0: none
     vec4 head_rotation;        // quaternion x y z w
     vec4 head_translation;
     vec4 mesh_color;     // linear RGB; w: ambient share

@@ -117,6 +117,6 @@ void main()
 #if TONE == 3
     pixel_out = color;
 #else
-    pixel_out = vec4(display_from_linear(color.rgb / max(color.a, 1e-6)), color.a);
+    pixel_out = displayed(color);
 #endif
 }

@@ -125,12 +125,24 @@ int drawing_display(const RendererOptions *options)
     return light ? TONE_LIGHT : (int)options->tone;
 }
 
+static bool has_backing(const RendererOptions *options)
+{
+    return options->tone != TONE_NONE && options->background[3] == 1;
+}
+
 void drawing_background(const RendererOptions *options, float light[4])
 {
+    float opacity = has_backing(options) ? 0 : options->background[3];
     linear_from_srgb_color(options->background, light);
-    for (int k = 0; k < 3; ++k)
-        light[k] = options->background[3] * (float)tone_unmap(options->tone, (double)light[k]);
-    light[3] = options->background[3];
+    for (int k = 0; k < 3; ++k) light[k] *= opacity;
+    light[3] = opacity;
+}
+
+void drawing_backing(const RendererOptions *options, float color[4])
+{
+    color[3] = has_backing(options);
+    linear_from_srgb_color(options->background, color);
+    for (int k = 0; k < 3; ++k) color[k] *= color[3];
 }
 
 // The two first terms of an environment are as a sky's and a ground's.
@@ -174,6 +186,7 @@ static void fill_draw_params(const RendererOptions *options, const DrawnMesh *me
         for (uint32_t i = 0; i < frame->light_count; ++i) draw->light_color[i][k] *= light;
     memcpy(draw->depth_range, options->depth_range, sizeof options->depth_range);
     drawing_background(options, draw->background);
+    drawing_backing(options, draw->backing);
     memcpy(draw->head_rotation, frame->head_rotation, sizeof draw->head_rotation);
     memcpy(draw->head_translation, frame->head_translation, sizeof frame->head_translation);
     if (options->aov == AOV_NONE) memcpy(draw->mesh_color, mesh->color, sizeof mesh->color);

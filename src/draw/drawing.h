@@ -29,8 +29,17 @@ typedef struct Drawing {
 // The conversion from light to colour: a Tone, or TONE_LIGHT if pixels keep linear light.
 int drawing_display(const RendererOptions *options);
 
-// The background: light, premultiplied, and its opacity.
+// A plain opaque background is a colour of the display, not light, so that it shows through thin
+// hair as much as it would behind a transparent picture. With a tone curve it is the backing: hair,
+// mesh and floor are drawn over nothing, and each pixel's tone-mapped colour is laid over the
+// backing (tone_over in shared_math.h). Without a tone curve the two ways are the same, and the
+// background is light behind everything. An environment is light, too, and hides the backing.
+
+// The light behind everything: linear RGB, premultiplied, and its opacity.
 void drawing_background(const RendererOptions *options, float light[4]);
+
+// The backing: linear RGB, and 1; all 0: none.
+void drawing_backing(const RendererOptions *options, float color[4]);
 
 // Begins a new image of `items`, which must stay valid until the next image begins. RESULT_FAILED
 // if memory is short or Marschner's table cannot be made.

@@ -35,7 +35,8 @@ typedef struct ScatterOptions {
 typedef struct RendererOptions {
     Raster raster;        // auto: blocks with CPU drivers, compute otherwise
     int width, height;    // px; images larger than a framebuffer are drawn as tiles
-    float background[4];  // sRGB and opacity 0..1; below 1 the images have an alpha channel
+    float background[4];  // sRGB and opacity: 0, 1, or without a tone curve between; below 1 the
+                          // images have an alpha channel
     bool backdrop;        // the environment is the background (backdrop.h); `background` is opaque
     float exposure;       // EV: factor 2^exposure of all light except that of `background`
     Tone tone;            // tone curve of all light except that of `background`

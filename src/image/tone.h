@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tone mapping from light to colour (glsl/draw/display.glsl), and its inverse.
+// Tone mapping from light to colour (glsl/draw/display.glsl).
 #pragma once
 
 #include "base/params.h"
@@ -9,6 +9,3 @@ enum { TONE_LIGHT = TONE_FILMIC + 1 };
 
 // Maps the light (>= 0) of one channel to a linear colour value.
 double tone_map(Tone tone, double light);
-
-// The light that maps to `value`, 0..1.
-double tone_unmap(Tone tone, double value);

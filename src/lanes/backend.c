@@ -255,6 +255,7 @@ static PixelStyle style_of(const RendererOptions *options, const DrawParams *dra
                         .depth_range = {options->depth_range[0], options->depth_range[1]},
                         .depth = {draw->depth[0], draw->depth[1]}};
     drawing_background(options, style.background);
+    drawing_backing(options, style.backing);
     return style;
 }
 

@@ -145,30 +145,40 @@ static void average(Strip *strip, int side)
 
 // --- Colours, as in display.glsl.
 
-SIMD_INLINE float tone_mapped(int tone, float c)
+// `behind`: the backing's colour in this channel, of which `share` is seen.
+SIMD_INLINE float displayed(int kind, float light, float behind, float share)
 {
-    return tone == TONE_REINHARD ? tone_reinhard(c) : tone == TONE_FILMIC ? tone_filmic(c) : c;
-}
-
-// Converts a row to straight alpha and to colours of this tone.
-SIMD_INLINE void display_as(Strip *restrict strip, int y, int kind)
-{
-    for (int x = 0; x < BLOCK_WIDTH; ++x) {
-        float straight = 1 / simd_max(strip->light[3][y][x], 1e-6f);
-        for (int c = 0; c < 3; ++c) {
-            float light = strip->light[c][y][x] * straight;
-            strip->light[c][y][x] =
-                kind == TONE_LIGHT ? light : srgb_from_linear(tone_mapped(kind, light));
-        }
+    switch (kind) {
+    case TONE_REINHARD:
+        return srgb_from_linear(tone_over(tone_reinhard(light), behind, share));
+    case TONE_FILMIC:
+        return srgb_from_linear(tone_over(tone_filmic(light), behind, share));
+    case TONE_NONE: // has no backing
+        return srgb_from_linear(light);
+    default:
+        return light;
     }
 }
 
-static void display(Strip *strip, int y, int kind)
+// Converts a row to straight alpha and to colours of this tone. (Over a backing the image is opaque
+// and has no alpha.)
+SIMD_INLINE void display_as(Strip *restrict strip, int y, const float backing[4], int kind)
 {
-    if (kind == TONE_NONE) display_as(strip, y, TONE_NONE);
-    if (kind == TONE_REINHARD) display_as(strip, y, TONE_REINHARD);
-    if (kind == TONE_FILMIC) display_as(strip, y, TONE_FILMIC);
-    if (kind == TONE_LIGHT) display_as(strip, y, TONE_LIGHT);
+    for (int x = 0; x < BLOCK_WIDTH; ++x) {
+        float alpha = strip->light[3][y][x], straight = 1 / simd_max(alpha, 1e-6f),
+              share = backing[3] * (1 - alpha);
+        for (int c = 0; c < 3; ++c)
+            strip->light[c][y][x] =
+                displayed(kind, strip->light[c][y][x] * straight, backing[c], share);
+    }
+}
+
+static void display(Strip *strip, int y, const PixelStyle *style)
+{
+    if (style->tone == TONE_NONE) display_as(strip, y, style->backing, TONE_NONE);
+    if (style->tone == TONE_REINHARD) display_as(strip, y, style->backing, TONE_REINHARD);
+    if (style->tone == TONE_FILMIC) display_as(strip, y, style->backing, TONE_FILMIC);
+    if (style->tone == TONE_LIGHT) display_as(strip, y, style->backing, TONE_LIGHT);
 }
 
 static void find_levels(const float light[BLOCK_WIDTH], float most_level,
@@ -205,7 +215,7 @@ static void store_float(const Strip *strip, int y, int channels, int width, floa
 static void store_row(Strip *strip, int y, const PixelStyle *style, const Image *image, int width,
                       void *to)
 {
-    if (image->kind != IMAGE_FLOAT) display(strip, y, style->tone);
+    if (image->kind != IMAGE_FLOAT) display(strip, y, style);
     if (image->kind == IMAGE_8)
         store_8(strip, y, image->channels, width, to);
     else if (image->kind == IMAGE_16)

@@ -15,6 +15,7 @@ typedef struct PixelStyle {
                       // depth_range[0], 0 at [1]; if these are equal: m
     float depth_range[2];
     float background[4]; // light, premultiplied, and opacity
+    float backing[4];    // the colour under the tone-mapped image: linear RGB, and 1; all 0: none
     float depth[2];      // clip z = x * w + y
 } PixelStyle;
 
