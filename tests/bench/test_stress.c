@@ -5,6 +5,7 @@
 #include "bench/stress_bound.h"
 #include "bench/stress_run.h"
 #include "support/hair_fixture.h"
+#include "support/needed.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -118,6 +119,19 @@ static void the_bound_is_as_tight_as_can_be(void **state)
         verdict = verdict_of("hybrid", "", HANGING[i], 200);
         assert_true(verdict.worst[STRESS_ENERGY] < 1e-3);
     }
+}
+
+// Whatever the other rules find.
+static void a_strand_that_is_nowhere_is_told_with_its_step(void **state)
+{
+    (void)state;
+    StressCase stress = {.algo = "hybrid", .variant = ""};
+    StressVerdict verdict = {0};
+    NEEDED(stress_case_read(&stress, "", error));
+    stress.value[STRESS_away] = 1e31; // as far as no case can be
+    NEEDED(stress_run(&verdict, fixture_gpu(), &stress, 1, 3, 1, error));
+    assert_int_equal(verdict.first[STRESS_FINITE], 1);
+    assert_int_equal(verdict_of("hybrid", "", "", 3).first[STRESS_FINITE], 0);
 }
 
 // The bound allows the energy of a kick of the head and no more.
@@ -357,6 +371,7 @@ int main(void)
         cmocka_unit_test(every_case_can_be_made_plain),
         cmocka_unit_test(strands_are_such_as_reading_leaves),
         cmocka_unit_test(the_bound_is_as_tight_as_can_be),
+        cmocka_unit_test(a_strand_that_is_nowhere_is_told_with_its_step),
         cmocka_unit_test(the_heads_motion_counts),
         cmocka_unit_test(a_groom_holds_its_gravity),
         cmocka_unit_test(hair_is_bound_to_a_mesh_that_warps),

@@ -256,6 +256,17 @@ run 0 "$work/elsewhere.tfx" --mesh assets/head.obj --fit --attach --push-out 0.0
 says "--fit: scaled by 0.768"; says "turned by 20 degrees"; says "--attach: "; says " mm"; says "--push-out: "
 says "inside the mesh: 0 of "
 in_file "$work/fitted.json" '"strands_inside": 0'; in_file "$work/fitted.json" '"depth_inside"'
+# A box of 1 m; a strand from its top, whose other vertices are 10, 20 and 30 mm deep, and a root 5 mm above.
+printf 'v %s\n' '-0.5 -0.5 -0.5' '0.5 -0.5 -0.5' '0.5 0.5 -0.5' '-0.5 0.5 -0.5' '-0.5 -0.5 0.5' '0.5 -0.5 0.5' '0.5 0.5 0.5' '-0.5 0.5 0.5' >"$work/box.obj"
+printf 'f %s\n' '1 4 3 2' '5 6 7 8' '1 2 6 5' '3 4 8 7' '1 5 8 4' '2 3 7 6' >>"$work/box.obj"
+printf 'v %s\n' '0 0.5 0' '0.1 0.49 0' '0.2 0.48 0' '0.3 0.47 0' >"$work/deep.obj"
+echo 'l 1 2 3 4' >>"$work/deep.obj"
+run 0 "$work/deep.obj" --unit m --mesh "$work/box.obj" --mesh-unit m --push-out 0.002 -o "$work/out.tfx"
+says "--push-out: 3 of 4 vertices of 1 strands moved to 2 mm from the mesh; those inside were up to 30 mm deep, half of them up to 20 mm"
+printf 'v %s\n' '0 0.505 0' '0.1 0.6 0' >"$work/above.obj"
+echo 'l 1 2' >>"$work/above.obj"
+run 0 "$work/above.obj" --unit m --mesh "$work/box.obj" --mesh-unit m --attach -o "$work/out.tfx"
+says "--attach: 1 roots moved onto the mesh, half of them by at most 5 mm, all by at most 5 mm"
 run 2 assets/bob.tfx --attach -o "$work/unfit.tfx"; says "--attach: expected --mesh FILE with it"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj -o "$work/unfit.tfx"; says "--mesh: has no effect"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj --push-out -1 -o "$work/unfit.tfx"; says "--push-out: got '-1', expected a distance"; one_line

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Devices of the library, simulations and images on them, and interaction with the host's OpenGL
 // context.
+#include "base/random.h"
 #include "support/library_fixture.h"
 
+#include <cglm/cglm.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -315,6 +317,20 @@ static void draws_by_views_and_formats(void **state)
         TractrixView wrong = view;
         wrong.world_to_eye[(int)turns[i][0]] = turns[i][1];
         library_refused(tractrix_render(renderer, &wrong, &image, &error), TRACTRIX_USAGE,
+                        "view.world_to_eye");
+    }
+    Random random = random_create(6, 0);
+    for (int i = 0; i < 60; ++i) { // any rotation, but not its mirror image
+        versor turn;
+        mat4 rotation;
+        for (int k = 0; k < 4; ++k) turn[k] = (float)(2 * random_real(&random) - 1);
+        glm_quat_normalize(turn);
+        glm_quat_mat4(turn, rotation);
+        TractrixView turned = view;
+        for (int k = 0; k < 12; ++k) turned.world_to_eye[k] = rotation[k / 4][k % 4];
+        WELL(tractrix_render(renderer, &turned, &image, &error));
+        for (int k = 0; k < 3; ++k) turned.world_to_eye[4 * (i % 3) + k] *= -1;
+        library_refused(tractrix_render(renderer, &turned, &image, &error), TRACTRIX_USAGE,
                         "view.world_to_eye");
     }
     image.width = 47;

@@ -6,6 +6,8 @@
 #include "support/plain.h"
 #include "support/studio.h"
 
+#include "glsl/common/hash.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -212,6 +214,40 @@ static void the_nearer_strand_is_in_front(void **state)
         assert_int_equal(middle[2], 0);
         sitting_close(&sitting);
     }
+}
+
+// Each strand has the brightness and the warmth that the renderer gives to its number and seed.
+static void strands_differ_as_the_renderers_do(void **state)
+{
+    (void)state;
+    enum { COUNT = 6, SEED = 12345 };
+    const double brighter = 0.3, warmer = 0.4, grey = image_linear_from_srgb(0.5);
+    float position[COUNT][2][3];
+    Sitting sitting;
+    sitting_open(&sitting, BLACK);
+    for (int i = 0; i < COUNT; ++i)
+        for (int j = 0; j < 2; ++j)
+            memcpy(position[i][j], (float[3]){j ? 50 : -50, (float)(16 * i - 40), 0},
+                   sizeof(float[3]));
+    SectionParams *material =
+        sitting_add(&sitting, studio_strands(COUNT, 2, (const float(*)[3])position), 6, 1);
+    for (int k = 0; k < 3; ++k) material->color[k] = 0.5f;
+    material->color_variation = (float)brighter, material->warmth_variation = (float)warmer;
+    sitting.scene.seed = SEED;
+    draw(&sitting);
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const uint32_t id = i ^ SEED;
+        const double brightness = 1 + brighter * (double)hash_signed(id),
+                     warmth = warmer * (double)hash_signed(id + 0x9e3779b9u),
+                     shares[] = {1 + warmth, 1, 1 - warmth};
+        const uint8_t *found = pixel(&sitting, SIDE / 2, SIDE / 2 - (16 * (int)i - 40));
+        for (int k = 0; k < 3; ++k) {
+            double expected = 255 * image_srgb_from_linear(fmin(grey * brightness * shares[k], 1));
+            if (!(fabs(found[k] - expected) < 0.51))
+                fail_msg("strand %u: %d is %d: expected %g", i, k, found[k], expected);
+        }
+    }
+    sitting_close(&sitting);
 }
 
 static void a_mesh_hides_what_is_behind_it(void **state)
@@ -455,6 +491,7 @@ int main(void)
         cmocka_unit_test(strands_behind_each_other_cover_no_more),
         cmocka_unit_test(joints_have_neither_gap_nor_overlap),
         cmocka_unit_test(the_nearer_strand_is_in_front),
+        cmocka_unit_test(strands_differ_as_the_renderers_do),
         cmocka_unit_test(a_mesh_hides_what_is_behind_it),
         cmocka_unit_test(threads_do_not_change_it),
         cmocka_unit_test(the_renderer_is_near_the_reference),

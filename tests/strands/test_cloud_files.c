@@ -309,6 +309,36 @@ static void npy_of_every_float_and_order_is_read(void **state)
             }
 }
 
+// NumPy's specification (NEP 1): the dictionary, spaces up to a multiple of 64, a line end.
+static void a_written_header_is_padded_by_spaces(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t shape[3];
+        uint32_t axes;
+        const char *dict;
+    } CASES[] = {
+        {{7}, 1, "{'descr': '<f4', 'fortran_order': False, 'shape': (7,), }"},
+        {{7, 3}, 2, "{'descr': '<f4', 'fortran_order': False, 'shape': (7, 3), }"},
+        {{4000000000, 1000000, 3},
+         3,
+         "{'descr': '<f4', 'fortran_order': False, 'shape': (4000000000, 1000000, 3), }"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
+        char header[NPY_HEADER_SIZE];
+        memset(header, 0x7f, sizeof header); // whatever stood there before
+        size_t size = npy_array_header(header, "<f4", CASES[i].shape, CASES[i].axes),
+               length = strlen(CASES[i].dict);
+        assert_int_equal(size % 64, 0);
+        assert_true(size >= 10 + length + 1 && size < 10 + length + 1 + 64);
+        assert_memory_equal(header, "\x93NUMPY\1\0", 8);
+        assert_int_equal((uint8_t)header[8] + 256 * (uint8_t)header[9], size - 10);
+        assert_memory_equal(header + 10, CASES[i].dict, length);
+        for (size_t k = 10 + length; k < size - 1; ++k) assert_int_equal(header[k], ' ');
+        assert_int_equal(header[size - 1], '\n');
+    }
+}
+
 // Every half float below the smallest normal one, 2^-14, and some above: exactly m 2^-24.
 static void small_halves_are_read_exactly(void **state)
 {
@@ -615,6 +645,7 @@ int main(void)
         cmocka_unit_test(malformed_ply_is_refused),
         cmocka_unit_test(rows_of_nothing_are_passed_over),
         cmocka_unit_test(npy_of_every_float_and_order_is_read),
+        cmocka_unit_test(a_written_header_is_padded_by_spaces),
         cmocka_unit_test(small_halves_are_read_exactly),
         cmocka_unit_test(other_npy_is_refused),
         cmocka_unit_test(the_axis_that_is_up_is_read_in_every_byte_order),
