@@ -212,18 +212,35 @@ static void report_steps(const Simulation *simulation)
             (long long)schedule->settling);
 }
 
+// Prints an automatic camera as values of the options that set it.
+static void report_camera(const Run *run)
+{
+    const RunParams *params = &run->scene.run;
+    const float *eye = run->framing.eye, *target = run->framing.target;
+    if (!params->verbose || !(params->eye.automatic || params->target.automatic)) return;
+    if (!params->eye.automatic) eye = params->eye.value;
+    if (!params->target.automatic) target = params->target.value;
+    fprintf(stderr, "camera: --eye=%.9g,%.9g,%.9g --target=%.9g,%.9g,%.9g\n", (double)eye[0],
+            (double)eye[1], (double)eye[2], (double)target[0], (double)target[1],
+            (double)target[2]);
+}
+
 // Fits the camera to the hair, unless the scene sets the camera.
 static Result aim(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     SurveyReport report;
     outline_frame(&run->framing, &run->scene, run->assets.strands, run->assets.meshes);
-    if (!survey_is_wanted(&run->scene)) return RESULT_OK;
+    if (!survey_is_wanted(&run->scene)) {
+        report_camera(run);
+        return RESULT_OK;
+    }
     TRY(survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error));
     activity_set(NULL);
     if (params->verbose)
         fprintf(stderr, "camera: fits %d frames, simulated in %.2g s\n", report.frames,
                 report.ms / 1e3);
+    report_camera(run);
     if (!params->quiet && report.step.most > 0)
         fprintf(stderr,
                 "loop: hair moves by at most %.3g mm (RMS %.3g) from the last frame to the first, "
