@@ -90,6 +90,12 @@ static json_t *describe_shape(const Body *shape)
                      "linear", times->linear);
 }
 
+// 17 digits: key times are doubles.
+static char *write_text(const json_t *object)
+{
+    return json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+}
+
 Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *error)
 {
     const Scene *scene = simulation->scene;
@@ -103,8 +109,7 @@ Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *er
     }
     keep_values(object);
     json_object_set_new(object, MAKER, json_string(cache_scene_own_maker()));
-    // 17 digits: key times are doubles.
-    char *dump = json_text(object, JSON_COMPACT | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+    char *dump = write_text(object);
     json_decref(object);
     if (!dump) return error_set(error, RESULT_FAILED, "no memory for the scene's values");
     *text = (Bytes){.data = (uint8_t *)dump, .size = strlen(dump)};
@@ -163,33 +168,69 @@ static Result refuse(const Difference *difference, const char *path, Error *erro
                      path, difference->place, was, is);
 }
 
+// Reads a stored scene and compares it with `is`, which is freed; NULL: there was no memory for it.
+// `forget`, if not NULL, removes from both what is not compared.
+static Result compare(const Bytes *text, json_t *is, void (*forget)(json_t *scene),
+                      const char *path, Error *error)
+{
+    Difference difference;
+    json_t *was = json_read(text->data, text->size, 0, NULL);
+    Result result = RESULT_OK;
+    if (!is || (!was && json_memory_short())) {
+        result = error_set(error, RESULT_FAILED, "%s: no memory to compare its scene", path);
+    } else if (!was) {
+        result = error_set(error, RESULT_BAD_INPUT,
+                           "%s: the stored scene is damaged: expected a JSON object", path);
+    } else {
+        keep_values(was); // earlier versions also wrote the parameters of other solvers
+        json_object_del(was, MAKER);
+        json_object_del(is, MAKER);
+        if (forget) {
+            forget(was);
+            forget(is);
+        }
+        if (find_difference(&difference, "", was, is)) result = refuse(&difference, path, error);
+    }
+    json_decref(is);
+    json_decref(was);
+    return result;
+}
+
 Result cache_scene_compare(const Bytes *text, const Simulation *simulation, const char *path,
                            Error *error)
 {
-    json_t *was = json_read(text->data, text->size, 0, NULL);
     Bytes now = {0};
-    if (!was && json_memory_short())
-        return error_set(error, RESULT_FAILED, "%s: no memory for its scene", path);
-    if (!was)
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%s: the stored scene is damaged: expected a JSON object", path);
-    keep_values(was); // earlier versions also wrote the parameters of other solvers
-    Result result = cache_scene_describe(&now, simulation, error);
-    if (result == RESULT_OK) {
-        // Parse the text again, so that both sides have the same JSON types for numbers.
-        json_t *is = json_read(now.data, now.size, 0, NULL);
-        Difference difference;
-        json_object_del(was, MAKER);
-        json_object_del(is, MAKER);
-        if (!is)
-            result = error_set(error, RESULT_FAILED, "no memory for the scene's values");
-        else if (find_difference(&difference, "", was, is))
-            result = refuse(&difference, path, error);
-        json_decref(is);
-    }
+    TRY(cache_scene_describe(&now, simulation, error));
+    // Parse the text again, so that both sides have the same JSON types for numbers.
+    json_t *is = json_read(now.data, now.size, 0, NULL);
     bytes_destroy(&now);
-    json_decref(was);
-    return result;
+    return compare(text, is, NULL, path, error);
+}
+
+static void forget_body_mesh(json_t *body)
+{
+    static const char *const keys[] = {"mesh_checksum", "body", "collide_mesh"};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; ++i) json_object_del(body, keys[i]);
+}
+
+static void forget_meshes(json_t *scene)
+{
+    const json_t *bodies = json_object_get(scene, "bodies");
+    forget_body_mesh(scene);
+    for (size_t i = 0; i < json_array_size(bodies); ++i)
+        forget_body_mesh(json_array_get(bodies, i));
+}
+
+Result cache_scene_compare_values(const Bytes *text, const Scene *scene, const char *path,
+                                  Error *error)
+{
+    json_t *object = scene_to_json(scene);
+    keep_values(object);
+    char *dump = write_text(object);
+    json_decref(object);
+    json_t *is = dump ? json_read(dump, strlen(dump), 0, NULL) : NULL;
+    free(dump);
+    return compare(text, is, forget_meshes, path, error);
 }
 
 // --- Hair.

@@ -24,6 +24,11 @@ const char *cache_scene_own_maker(void);
 Result cache_scene_compare(const Bytes *text, const Simulation *simulation, const char *path,
                            Error *error);
 
+// The same comparison before there is a simulation. It leaves out what needs one: the meshes and
+// whether hair collides with them.
+Result cache_scene_compare_values(const Bytes *text, const Scene *scene, const char *path,
+                                  Error *error);
+
 // For each section: number of strands, a checksum of their vertices as loaded, runs of equal vertex
 // counts, and the strands' numbers in their file, in the order of frames. Free with bytes_destroy.
 // RESULT_FAILED when memory is short.

@@ -111,6 +111,15 @@ static Result check_name(const Target *target, const char *text, int frame_count
         text, strrchr(text, '.'));
 }
 
+Result exporter_check(const char *text, int frame_count, Error *error)
+{
+    Target target = {0};
+    Result result = format_target(&target, text, error);
+    THEN(result, check_name(&target, text, frame_count, error));
+    target_destroy(&target);
+    return result;
+}
+
 // Sets the options of a file for the frames first, first + every, ...
 static Result describe(Exporter *exporter, const Strands *sections, int frame_count, Error *error)
 {

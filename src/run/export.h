@@ -28,13 +28,17 @@ typedef struct Exporter {
     int files;         // number of files written
 } Exporter;
 
+// Checks the name before there is a simulation: a name without a number accepts one frame, or all
+// of them if its format can hold them. RESULT_USAGE.
+Result exporter_check(const char *text, int frame_count, Error *error);
+
 // `text`: as for format_target. Files contain the guides (with export_followers: also the
 // followers) of all sections in the order in which they were read, in metres with y up, with the
 // texture coordinates, colours and other attributes that all sections have; several sections become
 // groups. USD and Alembic files also contain the sections' widths and colours. They hold all frames
 // in one file, as does .npz, which keeps them in memory until the end. `frame_count`: number of
-// frames to come; a name without a number accepts one frame otherwise. All arguments must outlive
-// the exporter. RESULT_USAGE for the name, RESULT_FAILED if the file can't be created or memory is
+// frames to come. All arguments must outlive
+// the exporter. Errors of exporter_check, RESULT_FAILED if the file can't be created or memory is
 // short. A zeroed struct may be destroyed; destroying discards an unfinished file.
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error);

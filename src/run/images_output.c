@@ -22,25 +22,40 @@ Result images_output_form(ImagesForm *form, const RunParams *run, Error *error)
     return RESULT_OK;
 }
 
-Result images_output_create(Output **output, const Images *images, const Fingerprint *fingerprint,
-                            int frame_count, Error *error)
+static OutputOptions describe(const RunParams *run, int channels, ImageKind kind, int frame_count)
 {
-    const RunParams *run = &images->scene->run;
-    const OutputOptions options = {
+    return (OutputOptions){
         .target = run->output,
         .width = run->size[0],
         .height = run->size[1],
-        .channels = renderer_channels(&images->renderer),
-        .kind = images->renderer.options.kind,
+        .channels = channels,
+        .kind = kind,
         .fps = (double)run->fps / run->every,
         .frame_count = frame_count,
         .columns = run->contact_sheet[0],
         .rows = run->contact_sheet[1],
-        .texts = &fingerprint->origin,
-        .layers = images->layers != NULL,
         .exr_float = run->exr_float,
         .records = run->resume,
     };
+}
+
+Result images_output_check(const RunParams *run, int frame_count, Error *error)
+{
+    ImagesForm form;
+    TRY(images_output_form(&form, run, error));
+    bool opaque = run->background[3] >= 1 || run->environment_background;
+    const OutputOptions options = describe(run, opaque ? 3 : 4, form.kind, frame_count);
+    return output_check(&options, error);
+}
+
+Result images_output_create(Output **output, const Images *images, const Fingerprint *fingerprint,
+                            int frame_count, Error *error)
+{
+    const RunParams *run = &images->scene->run;
+    OutputOptions options = describe(run, renderer_channels(&images->renderer),
+                                     images->renderer.options.kind, frame_count);
+    options.texts = &fingerprint->origin;
+    options.layers = images->layers != NULL;
     return output_create(output, &options, error);
 }
 

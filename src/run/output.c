@@ -261,6 +261,30 @@ static Result check_options(const OutputOptions *options, const Target *target, 
     return RESULT_OK;
 }
 
+static VideoOptions video_options(const OutputOptions *options, const Target *target)
+{
+    return (VideoOptions){
+        .path = target->before,
+        .width = options->width,
+        .height = options->height,
+        .channels = options->channels,
+        .fps = options->fps,
+    };
+}
+
+Result output_check(const OutputOptions *options, Error *error)
+{
+    Target target = {0};
+    Result result = target_parse(&target, options->target, error);
+    THEN(result, check_options(options, &target, error));
+    if (result == RESULT_OK && target.format == TARGET_FFMPEG) {
+        const VideoOptions video = video_options(options, &target);
+        result = video_check(&video, error);
+    }
+    target_destroy(&target);
+    return result;
+}
+
 static Result add_slot(Output *output, Error *error)
 {
     const OutputOptions *options = &output->options;
@@ -330,13 +354,7 @@ static Result start_sheet(Output *output, const OutputOptions *options, Error *e
 
 static Result start_video(Output *output, const OutputOptions *options, Error *error)
 {
-    const VideoOptions video = {
-        .path = output->target.before,
-        .width = options->width,
-        .height = options->height,
-        .channels = options->channels,
-        .fps = options->fps,
-    };
+    const VideoOptions video = video_options(options, &output->target);
     if (output->target.kind != TARGET_VIDEO) return RESULT_OK;
     return single_file_start_video(&output->single, output->target.format, &video, error);
 }

@@ -128,20 +128,33 @@ static Result check_values(const Scene *scene, Error *error)
     TRY(check_sheet(run, error));
     if (run->resume) TRY(resume_check(run, error));
     TRY(run_paths_claim(scene, error));
+    if (*run->output) TRY(images_output_check(run, sequence_count_drawn(run), error));
+    if (*run->export) TRY(exporter_check(run->export, sequence_count_drawn(run), error));
     TRY(caption_check(run->caption, error));
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(solver_check(&scene->sections[i].params, error));
     return RESULT_OK;
 }
 
-// Refuses a file that is not a cache or has too few frames, before anything is set up. Whether the
-// cache belongs to this scene is checked later, because this needs the simulation.
+// Refuses a file that is not a cache or has too few frames, before hair is read.
 static Result check_cache(const RunParams *run, Error *error)
 {
     CacheFile cache;
     if (!*run->from_cache) return RESULT_OK;
     Result result = cache_file_open(&cache, run->from_cache, error);
     THEN(result, cache_file_check(&cache, sequence_last_frame(run), error));
+    cache_file_close(&cache);
+    return result;
+}
+
+// Refuses a cache of a scene with other values, before a device is opened. Whether it belongs to
+// the same hair and meshes is checked later, because this needs the simulation.
+static Result check_cache_scene(const Scene *scene, Error *error)
+{
+    CacheFile cache;
+    if (!*scene->run.from_cache) return RESULT_OK;
+    Result result = cache_file_open(&cache, scene->run.from_cache, error);
+    THEN(result, cache_scene_compare_values(&cache.scene, scene, scene->run.from_cache, error));
     cache_file_close(&cache);
     return result;
 }
@@ -323,6 +336,7 @@ static Result prepare(Run *run, Error *error)
                     error));
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
                     error));
+    TRY(check_cache_scene(&run->scene, error)); // after a guessed scalp has added its colliders
     activity_set(NULL);
     run->loaded_ms = clock_ms();
     if (!params->quiet) warn_all(&run->scene);

@@ -85,8 +85,9 @@ static const Format *find_format(const char *path)
     return NULL;
 }
 
-static Result check_options(const VideoOptions *options, const Format *format, Error *error)
+Result video_check(const VideoOptions *options, Error *error)
 {
+    const Format *format = find_format(options->path);
     if (!format)
         return error_set(error, RESULT_USAGE,
                          "%s: expected a video's name, which ends in .mp4, .webm or .gif",
@@ -241,7 +242,7 @@ Result video_create(Video **video, const VideoOptions *options, Error *error)
 {
     *video = NULL;
     const Format *format = find_format(options->path);
-    TRY(check_options(options, format, error));
+    TRY(video_check(options, error));
     Video *created = calloc(1, sizeof *created);
     if (!created) return error_set(error, RESULT_FAILED, "%s: no memory", options->path);
     created->input = created->messages = -1;

@@ -16,8 +16,11 @@ typedef struct VideoOptions {
     double fps;        // frames per second, 0 < fps <= 1000; a gif shows at most 50
 } VideoOptions;
 
+// RESULT_USAGE for options that the format can't hold.
+Result video_check(const VideoOptions *options, Error *error);
+
 // Starts ffmpeg with a temporary file in the folder of `path`, in its own process group, so that ^C
-// on the terminal does not reach it. RESULT_USAGE for options that the format can't hold;
+// on the terminal does not reach it. Errors of video_check;
 // RESULT_FAILED if ffmpeg is missing (the message names the Debian package) or the file can't be
 // created.
 Result video_create(Video **video, const VideoOptions *options, Error *error);

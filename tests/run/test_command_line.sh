@@ -257,10 +257,16 @@ run 0 "$work/other.tfx" $plain --unit 0.00390625 --frames 3 --size 64x48 -q -o "
 }
 if diff -r "$work/u1" "$work/u2" >"$work/err"; then good; else bad "pictures differ"; fi
 
-claim "a cache that is none, or has too few frames, is told before a device is opened"
+claim "a cache that is none, has too few frames or is of another scene, and an output that cannot hold the frames, are told before a device is opened"
 run 3 assets/curls.tfx --from-cache "$work/none.cache" -o "$work/none.png"; says "none.cache"; if grep -q OpenGL "$work/err"; then bad "a device was opened"; else good; fi
 run 0 assets/curls.tfx --followers 0 --frames 2 --cache "$work/two.cache" -q
 run 3 assets/curls.tfx --followers 0 --frames 4 --from-cache "$work/two.cache" -o "$work/two/"; says "two.cache"; if grep -q OpenGL "$work/err"; then bad "a device was opened"; else good; fi
+run 3 assets/curls.tfx --followers 0 --frames 2 --style 0.9 --from-cache "$work/two.cache" -o "$work/two/"; says "two.cache: was simulated with sections[0].style 0.5, but this scene has 0.9"; if grep -q OpenGL "$work/err"; then bad "a device was opened"; else good; fi
+for words in "-o $work/two.png" "-o $work/two.mp4 --background transparent" "-o $work/two.gif --fps 2000" "-o $work/two/ --contact-sheet 2x1" "--export $work/two.tfx"; do
+    # shellcheck disable=SC2086 # lists of words
+    run 2 assets/curls.tfx --followers 0 --frames 2 $words; one_line; says "two"
+done
+none "$work/two"
 
 claim "one .npz file takes all frames, those of one for each frame"
 run 0 assets/curls.tfx --followers 0 --frames 3 --first 1 -q --export "$work/all.npz"
