@@ -19,5 +19,5 @@ const ForeignFile *foreign_find(const void *data, size_t size);
     "/usr/share/tractrix/blender_hair.py)"
 
 // What a reader expected that got hair for a mesh, or a mesh for hair.
-#define FOREIGN_WANTS_MESH "expected a mesh (pass hair files without --mesh)"
+#define FOREIGN_WANTS_MESH "expected a mesh (tractrix-render takes hair without --mesh)"
 #define FOREIGN_WANTS_HAIR "expected hair (pass a mesh with --mesh)"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/mesh_sequence.h"
+#include "base/foreign.h"
 #include "base/target.h"
 #include "mesh/mesh_read.h"
 
@@ -196,9 +197,10 @@ static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, cons
 {
     bool own = samples->triangle != NULL;
     if (!own && !rest->vertex_count)
-        return error_set(
-            error, RESULT_BAD_INPUT,
-            "%s: has no faces: expected --mesh-rest with an OBJ or PLY file that has them", path);
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: no faces: " FOREIGN_WANTS_MESH
+                         ", or --mesh-rest with an OBJ or PLY file that has them",
+                         path);
     uint64_t triangles = own ? samples->triangle_count : rest->triangle_count;
     if (triangles == 0 || triangles > UINT32_MAX / 8)
         return error_set(error, RESULT_BAD_INPUT,

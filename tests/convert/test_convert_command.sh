@@ -270,7 +270,7 @@ says "--attach: 1 roots moved onto the mesh, half of them by at most 5 mm, all b
 run 2 assets/bob.tfx --attach -o "$work/unfit.tfx"; says "--attach: expected --mesh FILE with it"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj -o "$work/unfit.tfx"; says "--mesh: has no effect"; one_line
 run 2 assets/bob.tfx --mesh assets/head.obj --push-out -1 -o "$work/unfit.tfx"; says "--push-out: got '-1', expected a distance"; one_line
-run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "expected a mesh (pass hair files without --mesh)"; one_line
+run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "expected a mesh (tractrix-render takes hair without --mesh)"; one_line
 run 3 assets/head.obj; says "not hair: expected hair (pass a mesh with --mesh)"; one_line
 none "$work/unfit.tfx"
 
@@ -280,9 +280,11 @@ for number in 0 1; do cp assets/bob.tfx "$work/bob_$number.tfx"; done
 run 0 "$work/bob_%d.tfx" -q --mesh assets/head.obj --stats; grep "inside the mesh" "$work/out" >"$work/again"; equal "$work/inside" "$work/again"
 run 0 "$work/bob_0.tfx" "$work/bob_1.tfx" --mesh assets/head.obj --stats; says "inside the mesh: "
 
-claim "meshes of PLY and Alembic files are refused as hair"
+claim "meshes of PLY, NumPy and Alembic files are refused as hair, and hair as a mesh"
 printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n-1 -1 -1\n1 -1 -1\n0 1 0\n0 -1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >"$work/mesh.ply"
 run 0 $curls --mesh "$work/mesh.ply" --mesh-unit m --stats; says "inside the mesh: "
+run 3 assets/nod.npz; says "a mesh, not hair: expected hair (pass a mesh with --mesh)"; one_line
+run 0 $curls --nth 20 -q -o "$work/hair.npz"; run 3 $curls --mesh "$work/hair.npz" --fit -o "$work/unfit.tfx"; says "no faces: expected a mesh (tractrix-render takes hair without --mesh)"; one_line
 run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: expected hair (pass a mesh with --mesh)"; one_line
 sed 's/3 0 3 2/3 0 3 9/' "$work/mesh.ply" >"$work/bad.ply"
 run 3 $curls --mesh "$work/bad.ply" --stats; says "bad.ply:17: face 3 has corner 9: expected less than 4"; one_line

@@ -179,8 +179,8 @@ static void malformed_files_are_refused_with_their_line(void **state)
     static const struct {
         const char *text, *message;
     } cases[] = {
-        {"", "1: no faces: expected a mesh (pass hair files without --mesh)"},
-        {SQUARE, "5: no faces: expected a mesh (pass hair files without --mesh)"},
+        {"", "1: no faces: expected a mesh (tractrix-render takes hair without --mesh)"},
+        {SQUARE, "5: no faces: expected a mesh (tractrix-render takes hair without --mesh)"},
         {"v 0 0\nf 1 1 1\n", "1: expected a vertex's coordinate, got the end of the line"},
         {"v 0 0 nan\n", "1: expected a vertex's coordinate, got 'nan'"},
         {"v 0 x 0\n", "1: expected a vertex's coordinate, got 'x'"},

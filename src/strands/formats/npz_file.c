@@ -4,6 +4,7 @@
 // points. The table ARRAYS below lists the other arrays of .npz; docs/formats.md describes them.
 #include "strands/formats/npz_file.h"
 
+#include "base/foreign.h"
 #include "base/npy_array.h"
 #include "base/zip.h"
 #include "strands/formats/cloud.h"
@@ -50,7 +51,7 @@ static Result make_source(FormatSource *source, Reader *reader, const NpyArray *
                           Layout layout, const uint32_t *sizes, uint64_t place, uint32_t stride)
 {
     if (layout.vertices >= UINT32_MAX || layout.strands >= UINT32_MAX)
-        return reader_fail(reader, "too many points: expected fewer than 2^32");
+        return reader_fail(reader, "too many points: expected fewer than 2^32 - 1");
     float(*positions)[3] = malloc((size_t)layout.vertices * sizeof *positions);
     if (!positions) return reader_fail_memory(reader);
     npy_array_copy(array, positions[0]);
@@ -291,7 +292,9 @@ static void read_strands(Npz *npz)
     Reader *reader = npz->reader;
     Held held = {0};
     uint32_t *sizes = NULL;
-    if (find_positions(npz, &held) >= 0) {
+    if (!npz->source->wishes.array && find_name(npz, "faces") >= 0)
+        reader_fail(reader, "a mesh, not hair: " FOREIGN_WANTS_HAIR);
+    else if (find_positions(npz, &held) >= 0) {
         Layout layout = layout_of(&held.array);
         if (!layout.vertices) refuse_shape(reader, &held.array);
         if (reader_ok(reader) && !layout.size && find_name(npz, "sizes") >= 0)
