@@ -335,18 +335,23 @@ static void put_markdown(FILE *stream, const OptionsProgram *program)
 
 // --- Topics.
 
-// Returns the topic whose description has a word like this one, or NULL.
+// Returns the topic whose description has the word nearest to this one, or NULL if none is near.
 static const char *find_by_text(const OptionsProgram *program, const char *word)
 {
     enum { SHORTEST = 4 }; // letters: "and" describes nothing
+    char nearest[80] = "";
+    const char *topic = NULL;
     for (const char *const(*t)[2] = program->topics; t && (*t)[0]; ++t) {
         char text[LIST_SIZE], *rest = NULL;
         snprintf(text, sizeof text, "%s", (*t)[1] ? (*t)[1] : "");
         for (char *is = strtok_r(text, " ,", &rest); is; is = strtok_r(NULL, " ,", &rest))
-            if (strlen(is) >= SHORTEST && suggest_nearest(word, (const char *[]){is}, 1))
-                return (*t)[0];
+            if (strlen(is) >= SHORTEST &&
+                suggest_nearest(word, (const char *[]){nearest, is}, 2) == is) {
+                snprintf(nearest, sizeof nearest, "%s", is);
+                topic = (*t)[0];
+            }
     }
-    return NULL;
+    return topic;
 }
 
 // Finds the topic or option that the user may have meant, spelled as he writes it; "" if there is

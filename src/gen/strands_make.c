@@ -318,7 +318,7 @@ static Result check_recipe(const StrandsRecipe *recipe, Error *error)
             return RESULT_USAGE;
     if ((uint64_t)recipe->count * recipe->vertices >= UINT32_MAX)
         return error_set(error, RESULT_USAGE,
-                         "%u strands of %u vertices: expected fewer than 2^32 vertices in all",
+                         "%u strands of %u vertices: expected fewer than 2^32 - 1 vertices in all",
                          recipe->count, recipe->vertices);
     double wound = 2.0 * PI * (double)recipe->curl_radius * (double)recipe->curl_turns;
     if (recipe->style == STRANDS_STYLE_CURLS && wound > 0.9 * (double)recipe->length)

@@ -119,7 +119,7 @@ static void *pile_add(Reader *reader, Pile *pile, size_t size)
 {
     if (!reader_ok(reader)) return NULL;
     if (pile->count == UINT32_MAX - 1) {
-        reader_fail(reader, "too many vertices or faces: expected fewer than 2^32");
+        reader_fail(reader, "too many vertices or faces: expected fewer than 2^32 - 1");
         return NULL;
     }
     if (pile->count == pile->capacity) {

@@ -10,7 +10,7 @@ Result strands_create(Strands *strands, uint32_t strand_count, uint32_t vertex_c
 {
     *strands = (Strands){.strand_count = strand_count, .vertex_count = vertex_count};
     if (strand_count == UINT32_MAX)
-        return error_set(error, RESULT_FAILED, "%u strands: expected fewer than 2^32",
+        return error_set(error, RESULT_FAILED, "%u strands: expected fewer than 2^32 - 1",
                          strand_count);
     strands->first = calloc((size_t)strand_count + 1, sizeof *strands->first);
     strands->position = calloc((size_t)vertex_count + 1, sizeof *strands->position);

@@ -158,7 +158,7 @@ Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Err
     uint64_t vertices = 0;
     for (uint32_t i = 0; i < count; i++) vertices += strands_size(strands, which[i]);
     if (vertices >= UINT32_MAX)
-        return error_set(error, RESULT_FAILED, "too many vertices: expected fewer than 2^32");
+        return error_set(error, RESULT_FAILED, "too many vertices: expected fewer than 2^32 - 1");
     TRY(strands_create(&other, count, (uint32_t)vertices, error));
     if (!allocate_arrays(&other, strands, 1)) {
         strands_destroy(&other);
@@ -224,7 +224,7 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
     }
     if (strands >= UINT32_MAX || vertices >= UINT32_MAX)
         return error_set(error, RESULT_FAILED,
-                         "too many strands or vertices: expected fewer than 2^32");
+                         "too many strands or vertices: expected fewer than 2^32 - 1");
     TRY(strands_create(all, (uint32_t)strands, (uint32_t)vertices, error));
     if (!allocate_arrays(all, sets, count)) {
         strands_destroy(all);

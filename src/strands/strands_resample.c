@@ -162,7 +162,7 @@ static Result make_room(Strands *to, const Strands *from, const ResampleOptions 
         all += count;
     }
     if (all >= UINT32_MAX)
-        return error_set(error, RESULT_FAILED, "%.0f vertices: expected fewer than 2^32", all);
+        return error_set(error, RESULT_FAILED, "%.0f vertices: expected fewer than 2^32 - 1", all);
     TRY(strands_create(to, from->strand_count, (uint32_t)all, error));
     for (uint32_t s = 0; s < from->strand_count; s++)
         to->first[s + 1] = to->first[s] + (uint32_t)count_wanted(from, s, options);

@@ -153,6 +153,9 @@ static void topics_list_groups_and_solvers(void **state)
     assert_string_equal(error.text, "--help: no topic 'solvers': did you mean 'sim'?");
     assert_int_equal(render_help("image", stdout, &error), RESULT_USAGE);
     assert_string_equal(error.text, "--help: no topic 'image': did you mean 'output'?");
+    assert_int_equal(render_help("fibers", stdout, &error),
+                     RESULT_USAGE); // nearer to "fibres" than to "files"
+    assert_string_equal(error.text, "--help: no topic 'fibers': did you mean 'hair'?");
     assert_int_equal(render_help("lod-widht", stdout, &error), RESULT_USAGE);
     assert_non_null(strstr(error.text, "did you mean 'lod-width'?"));
     assert_int_equal(render_help("lite", stdout, &error), RESULT_USAGE);

@@ -350,7 +350,7 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
                 curves->points.sample[i].count);
     }
     if (reader_ok(reader) && vertices >= UINT32_MAX)
-        reader_fail(reader, "too many points: expected fewer than 2^32");
+        reader_fail(reader, "too many points: expected fewer than 2^32 - 1");
     return vertices;
 }
 

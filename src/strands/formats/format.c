@@ -151,7 +151,7 @@ Result format_source_create(FormatSource *source, Reader *reader, uint32_t stran
                              .used_array = before.used_array};
     memcpy(source->note, before.note, sizeof source->note);
     if (vertex_count >= UINT32_MAX)
-        return reader_fail(reader, "%llu vertices: expected fewer than 2^32",
+        return reader_fail(reader, "%llu vertices: expected fewer than 2^32 - 1",
                            (unsigned long long)vertex_count);
     Result result = strands_create(&source->strands, strand_count, (uint32_t)vertex_count, NULL);
     source->place = calloc((size_t)strand_count + 1, sizeof *source->place);

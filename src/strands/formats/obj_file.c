@@ -104,7 +104,7 @@ static Result make_room(Obj *obj)
         return reader_fail(reader,
                            "a Wavefront file without lines (l), not hair: " FOREIGN_WANTS_HAIR);
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
-        return reader_fail(reader, "too many vertices or lines: expected fewer than 2^32");
+        return reader_fail(reader, "too many vertices or lines: expected fewer than 2^32 - 1");
     TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));
     obj->position = malloc(obj->vertices * sizeof *obj->position + 1);
     obj->line = malloc(obj->vertices * sizeof *obj->line + 1);
