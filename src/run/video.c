@@ -34,7 +34,7 @@ struct Video {
 
 typedef struct Format {
     const char *suffix;
-    bool has_alpha, is_even;
+    bool has_alpha, is_even, halves_chroma;
     double fps_shown; // maximum frames per second; 0: no limit
     const char *filter, *filter_alpha;
     const char *arguments[FORMAT_ARGUMENTS];
@@ -45,12 +45,16 @@ typedef struct Format {
 #define TO_YUV                                                                                     \
     "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+bitexact,format="
 
+// Removes a last column that was added. Without `exact` the crop would keep whole pairs.
+#define EXACT_CROP ",crop=iw-1:ih:0:0:exact=1"
+
 static const double FPS_MAX = 1000;
 
 static const Format formats[] = {
     {
         .suffix = ".mp4",
         .is_even = true, // H.264 with subsampled chroma needs even sizes
+        .halves_chroma = true,
         .filter = TO_YUV "yuv420p",
         .arguments = {"-c:v", "libx264", "-preset", "fast", "-crf", "18", "-movflags", "+faststart",
                       "-f", "mp4"},
@@ -58,6 +62,7 @@ static const Format formats[] = {
     {
         .suffix = ".webm",
         .has_alpha = true,
+        .halves_chroma = true,
         .filter = TO_YUV "yuv420p",
         .filter_alpha = TO_YUV "yuva420p",
         // Alternate reference frames cannot be transparent.
@@ -119,11 +124,16 @@ static void add_arguments(Command *command, const char *const *arguments)
 static void write_filter(Command *command, const Format *format, const VideoOptions *options)
 {
     const char *filter = options->channels == 4 ? format->filter_alpha : format->filter;
-    int right = options->width % 2, bottom = options->height % 2;
-    if (format->is_even && (right || bottom))
+    // ffmpeg makes the chroma of an odd last column from that column and bytes of the next row, so
+    // the column is repeated first.
+    int right = format->halves_chroma ? options->width % 2 : 0,
+        bottom = format->is_even ? options->height % 2 : 0;
+    if (right || bottom)
         snprintf(command->filter, sizeof command->filter,
-                 "format=gbrp,pad=%d:%d,fillborders=right=%d:bottom=%d:mode=smear,%s",
-                 options->width + right, options->height + bottom, right, bottom, filter);
+                 "format=%s,pad=%d:%d,fillborders=right=%d:bottom=%d:mode=smear,%s%s",
+                 options->channels == 4 ? "gbrap" : "gbrp", options->width + right,
+                 options->height + bottom, right, bottom, filter,
+                 format->is_even ? "" : EXACT_CROP);
     else if (format->fps_shown > 0 && options->fps > format->fps_shown)
         snprintf(command->filter, sizeof command->filter, "fps=%g,%s", format->fps_shown, filter);
     else

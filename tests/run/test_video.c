@@ -132,6 +132,35 @@ static void webm_keeps_transparency(void **state)
     assert_in_range((uint8_t)pixel[3], 123, 133);
 }
 
+// A column that is repeated or left alone is black; one whose chroma comes from the next row, too,
+// is red.
+static void the_last_of_an_odd_number_of_columns_keeps_its_colour(void **state)
+{
+    need_ffmpeg();
+    for (int channels = 3; channels <= 4; channels++) {
+        Error error;
+        Video *video;
+        Image image;
+        uint64_t bytes;
+        char pixels[WIDTH * HEIGHT * 3 + 1];
+        const char *path = temporary_path(state, "red.webm");
+        VideoOptions options = {
+            .path = path, .width = WIDTH, .height = HEIGHT, .channels = channels, .fps = 25.0};
+        assert_int_equal(image_create(&image, WIDTH, HEIGHT, channels, &error), RESULT_OK);
+        for (int i = 0; i < WIDTH * HEIGHT * channels; i++)
+            image.pixels[i] = i % channels == 3 || i % (WIDTH * channels) == 0 ? 255 : 0;
+        assert_int_equal(video_create(&video, &options, &error), RESULT_OK);
+        assert_int_equal(video_write(video, &image, &error), RESULT_OK);
+        assert_int_equal(video_finish(video, &bytes, &error), RESULT_OK);
+        video_destroy(video);
+        image_destroy(&image);
+        run("ffmpeg -v error -nostdin -i", path, "-f rawvideo -pix_fmt rgb24 -", pixels,
+            sizeof pixels);
+        for (int row = 0; row < HEIGHT; row++)
+            assert_in_range((uint8_t)pixels[3 * ((row + 1) * WIDTH - 1)], 0, 12);
+    }
+}
+
 static void the_same_frames_give_the_same_bytes(void **state)
 {
     need_ffmpeg();
@@ -169,6 +198,7 @@ int main(void)
         TEST(webm_has_every_frame_in_order),
         TEST(gif_has_every_frame_in_order),
         TEST(webm_keeps_transparency),
+        TEST(the_last_of_an_odd_number_of_columns_keeps_its_colour),
         TEST(the_same_frames_give_the_same_bytes),
         TEST(any_character_may_stand_in_the_name),
     };
