@@ -26,7 +26,7 @@ if command -v ffprobe >/dev/null; then
     run 0 assets/fur.tfx mp4 webm gif -- $small --size 65x49
     stream fur.mp4 h264,66,50,yuv420p,15
     stream fur.webm vp9,65,49,yuv420p,15
-    stream fur.gif gif,66,50,bgra,8 # as the first video
+    stream fur.gif gif,65,49,bgra,8
 else
     skip "ffprobe is not installed"
 fi
@@ -43,6 +43,35 @@ if command -v ffmpeg >/dev/null; then
     run 0 assets/fur.tfx sheet -o "$work/alone" $small --fps 20 -s 1 -q
     holds "$bin/tractrix-compare" "$work/alone/fur_sheet.png" "$work/once/fur_sheet.png" --pixel-tolerance 0
     turns=$work/once stream fur.gif gif,64,48,bgra,15
+
+    claim "several videos, or frames and videos, are made from frames that are drawn once, with the bytes of tractrix-render's own"
+    for more in "" "--background transparent"; do
+        kinds="mp4 webm"
+        [ -z "$more" ] || kinds="webm frames"
+        : >"$work/runs"
+        # shellcheck disable=SC2086
+        TRACTRIX_BIN="$work/counted" run 0 assets/fur.tfx $kinds gif sheet -o "$work/several" $small --size 65x49 --caption frame -s 0.5 -q $more
+        if [ "$(grep -c -- '--from-cache' "$work/runs")" = 1 ]; then good; else bad "$kinds: frames were drawn more than once"; fi
+        for kind in $kinds; do
+            case $kind in frames) continue ;; esac
+            # shellcheck disable=SC2086
+            run 0 assets/fur.tfx $kind -o "$work/single" $small --size 65x49 --caption frame -s 0.5 -q $more
+            equal "$work/single/fur.$kind" "$work/several/fur.$kind"
+        done
+        turns=$work/several stream fur.gif gif,65,49,bgra,8
+    done
+    if [ "$(find "$work/several" -type f | wc -l)" = 19 ]; then good; else bad "other files than two videos, a sheet, an animation and 15 frames are left"; fi
+    # shellcheck disable=SC2086
+    run 2 assets/fur.tfx mp4 frames -o "$work/clear" $small -s 0.1 -q --background transparent; says ".mp4 cannot hold a transparent background"
+
+    claim "--contact-sheet and --every need no second drawing"
+    : >"$work/runs"
+    # shellcheck disable=SC2086
+    TRACTRIX_BIN="$work/counted" run 0 assets/fur.tfx mp4 sheet gif --contact-sheet 3x2 --every 3 -o "$work/own_sheet" $small -s 0.5 -q
+    if [ "$(grep -c -- '--from-cache' "$work/runs")" = 1 ]; then good; else bad "frames were drawn more than once"; fi
+    turns=$work/own_sheet stream fur_sheet.png png,192,96,rgb24,1
+    turns=$work/own_sheet stream fur.gif gif,64,48,bgra,5
+    run 2 assets/fur.tfx sheet --contact-sheet 3; one_line; says "expected WxH"
     if [ "$(find "$work/once" | wc -l)" = 34 ]; then good; else bad "other files than 30 frames, a sheet and an animation are left"; fi
 else
     skip "ffmpeg is not installed"

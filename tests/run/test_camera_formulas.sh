@@ -14,13 +14,13 @@ formulas() {
         BEGIN {
             split(p, P, ","); split(e, E, ","); split(t, T, ","); split(u, U, ","); split(size, S, "x")
             pi = atan2(0, -1); a = degrees * pi / 180
-            for (k = 1; k <= 3; ++k) { V[k] = U[k]; R[k] = E[k] - T[k] }
-            unit(V); cross(V, R, VR); along = dot(V, R)
-            for (k = 1; k <= 3; ++k) E[k] = T[k] + R[k] * cos(a) + VR[k] * sin(a) + V[k] * along * (1 - cos(a))
-            for (k = 1; k <= 3; ++k) { Z[k] = E[k] - T[k]; D[k] = P[k] - E[k] }
-            unit(Z); cross(U, Z, X); unit(X); cross(Z, X, Y)
-            f = S[2] / 2 * cos(fov * pi / 360) / sin(fov * pi / 360); d = -dot(D, Z)
-            printf "%.4f %.4f %.4f\n", S[1] / 2 + f * dot(D, X) / d, S[2] / 2 - f * dot(D, Y) / d, d
+            for (k = 1; k <= 3; ++k) { V[k] = U[k]; B[k] = E[k] - T[k] }
+            unit(V); cross(V, B, VB); along = dot(V, B)
+            for (k = 1; k <= 3; ++k) E[k] = T[k] + B[k] * cos(a) + VB[k] * sin(a) + V[k] * along * (1 - cos(a))
+            for (k = 1; k <= 3; ++k) { F[k] = T[k] - E[k]; D[k] = P[k] - E[k] }
+            unit(F); cross(F, U, R); unit(R); cross(R, F, up)
+            s = S[2] / (2 * sin(fov * pi / 360) / cos(fov * pi / 360)); z = dot(D, F)
+            printf "%.4f %.4f %.4f\n", S[1] / 2 + s * dot(D, R) / z, S[2] / 2 - s * dot(D, up) / z, z
         }'
 }
 
