@@ -344,7 +344,7 @@ class Parameters(TypedDict, total=False):
     mesh_shading: Literal["matt", "skin"]
     """surface of the mesh: matt, or skin, with a soft highlight and a soft shadow edge [default skin]"""
     background: Union[Numbers, str]
-    """background color, sRGB, or transparent; neither exposure nor tone curve changes it [0 to 1; default #8a8d92]"""
+    """background color, sRGB, shown exactly as given; or transparent [0 to 1; default #8a8d92]"""
     quality: Literal["normal", "draft", "final"]
     """preset: draft is --lod-width 1 --smooth 1 --shadow-size 256 --scatter-cells 16; final is --shadow dom
     --shadow-size 512 --samples 2 --smooth 3 --scatter-cells 48 [default normal]"""
