@@ -14,6 +14,15 @@ run 0 light --case curls_blond_front,curls_blond_sky,fur_brown_side --way none,g
 same "$(field "$work/a.csv" verdict | grep -c holds)" 6 "rows that hold"
 same "$(field "$work/a.csv" way | sort | uniq -c | tr -s ' \n' ' ')" " 4 grid 4 none " "rows, and a mean for each way"
 same "$(grep -c '"mean_r"' "$work/a.json")" 8 "rows of JSON"
+for way in none grid; do
+    for name in coverage mean_r rel_b; do
+        same "$(awk -F, -v way=$way -v name=$name '
+            NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+            $at["way"] == way && $at["scene"] == "mean" { mean = $at[name]; next }
+            $at["way"] == way { sum += $at[name]; ++count }
+            END { print count, (sum / count / mean - 1) ^ 2 < 1e-8 }' "$work/a.csv")" "3 1" "mean $name of $way"
+    done
+done
 
 claim "so do straight, parallel, dense hair against the light and under a sky"
 mkdir "$work/straight"

@@ -33,6 +33,7 @@ run 3 $scene -q --from-cache "$hair" -o "$work/x/"; one_line; says "TRXCACHE"
 size=$(($(wc -c <"$work/a.cache") * 2 / 3))
 head -c $size "$work/a.cache" >"$work/cut.cache"
 run 3 $scene -q --from-cache "$work/cut.cache" -o "$work/x/"; one_line; says "complete frames: 0 to"; says "the file ends within"
+if [ "$(grep -o cut.cache "$work/err" | wc -l)" = 1 ]; then good; else bad "the file is named more than once"; fi
 run 0 $scene -q --from-cache "$work/cut.cache" --last 6 -o "$work/whole6/"
 run 2 $scene --cache "$work/a.cache" --from-cache "$work/a.cache"; one_line
 cp "$work/a.cache" "$work/flip.cache"

@@ -140,6 +140,9 @@ float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4]
     solver_pose(&fixture->solver, &fixture->step.head);
     float(*positions)[4] = gpu_buffer_read(&hair->position);
     assert_non_null(positions);
+    for (uint32_t i = 0; i < hair->strand_count; ++i) // whichever shader has written it (hair.h)
+        for (uint32_t j = 0; j < hair->vertex_count; ++j)
+            assert_true(positions[hair_address(hair, i, j)][3] == 1);
     return positions;
 }
 

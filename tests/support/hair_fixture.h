@@ -58,5 +58,5 @@ void fixture_step(HairFixture *fixture);
 void fixture_require_finite(HairFixture *fixture);
 
 // The drawn positions of batch `batch` (after writing the pose), addressed by hair_address;
-// malloc'ed.
+// malloc'ed. Fails unless each has w = 1.
 float (*fixture_positions(HairFixture *fixture, uint32_t batch))[4];
