@@ -16,8 +16,8 @@ class Parameters(TypedDict, total=False):
     """axis of the hair file that points up; auto: as the file says (USD), otherwise z in Cem Yuksel's .hair files and y
     in all others [default auto]"""
     points_per_strand: int
-    """points per strand in .ply and .npy files that only list points, and vertices per cubic curve of USD and Alembic
-    files; 0: found from the gaps between strands, and 1 to 4 per curve segment [0 to 65535; default 0]"""
+    """points per strand of .ply and .npy point lists (0: found from the gaps between strands); vertices per cubic curve
+    of USD and Alembic files (0: 1 to 4 per curve segment) [0 to 65535; default 0]"""
     group: Union[int, Literal["auto"]]
     """read only the strands of this group: Alembic's groom_group_id, a section of a .usda; auto: all strands [0 to
     16777215; default auto]"""
@@ -243,8 +243,8 @@ class Parameters(TypedDict, total=False):
     tip_length: float
     """share of the strand, from the tip, over which the color changes to --tip-color; 0: none [0 to 1; default 0]"""
     radius: Union[float, Literal["auto"]]
-    """fibre radius at the root; auto: such that on average 3 fibres cover each point of the hair, but, except in fur,
-    at most 1/400 of the longest strand [1e-07 to 1 m; default auto]"""
+    """fibre radius at the root; auto: on average 3 fibres cover each point of the hair; hair other than fur gets at
+    most 1/400 of the longest strand [1e-07 to 1 m; default auto]"""
     tip_ratio: float
     """radius at the tip divided by the radius at the root [0 to 1; default 0.3]"""
     opacity: float
@@ -375,11 +375,11 @@ class Parameters(TypedDict, total=False):
     oit_layers: int
     """fragments per pixel that --oit abuffer sorts; 0: 8, or 16 with --samples [0 to 64; default 0]"""
     least_seen: float
-    """--raster blocks: smallest visible share of a pixel for which a ribbon is shaded; at most 7 % of a pixel's hair
-    stays unshaded; pixels that transmit less than twice this share are finished; 0: off [0 to 0.5; default 0.01]"""
+    """--raster blocks: ribbons that cover less than this share of a pixel visibly are not shaded (at most 7 % of a
+    pixel's hair); a pixel that transmits less than twice this share is finished; 0: off [0 to 0.5; default 0.01]"""
     ribbon_length: float
-    """longest ribbon, in px of samples, for which --raster blocks leaves out points of straight strands (over 1 px: at
-    most a sixteenth of the strand); colours are interpolated along ribbons; 0: none [0 to 64 px; default 2]"""
+    """--raster blocks leaves out points of straight strands while ribbons are at most this long, in px of samples (over
+    1 px: at most 1/16 of the strand); colours are interpolated along ribbons; 0: off [0 to 64 px; default 2]"""
     thickness: Numbers
     """of all vertices, one strand behind the other, relative to its mean, which `radius` gives"""
     uv: Numbers

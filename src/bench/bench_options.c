@@ -74,8 +74,7 @@ static const Option OPTIONS[] = {
      "'plain'; light: only these cases, separated by commas"},
     {"way", 0, OPTION_STRING, AT(bench.ways), "LIST", 0, 0,
      "light: only these methods of computing light, separated by commas, or all (default: methods "
-     "with a stated bound); 'traced one' and 'traced' are a path tracer with one bounce and with "
-     "64"},
+     "with a stated bound); a path tracer: 'traced one' with 1 bounce, 'traced' with 64 bounces"},
     {"render", 0, OPTION_STRING, AT(bench.render), "TEXT", 0, 0,
      "light, groom: options of tractrix-render for every scene, for example --render='--smooth 3'"},
     {"picture", 0, OPTION_STRING, AT(bench.picture), "FILE.png", 0, 0,

@@ -77,7 +77,7 @@ static const Option OPTIONS[] = {
 
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0,
      "head or body for --fit, --attach and --push-out, and for --stats, which then prints how deep "
-     "hair is inside it: Wavefront OBJ or PLY; if a file has samples, the first sample"},
+     "hair is inside it: OBJ, PLY, or a deforming mesh with faces (its first sample)"},
     {"mesh-unit", 0, OPTION_STRING, AT(mesh_unit), UNITS, 0, 0,
      "length of one unit of the mesh [default: as the file says, otherwise as for the first hair "
      "file]"},
