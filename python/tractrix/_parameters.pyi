@@ -283,8 +283,8 @@ class Parameters(TypedDict, total=False):
     """defaults of lights, fibres, exposure and background: studio; or plain: two lights without shadows, to compare
     with older images [default studio]"""
     light_radius: float
-    """radius of the lights of the look, as seen from the hair: softens shadows and highlights; lights of a scene file
-    have the key `radius` [0 to 45 deg; default 0]"""
+    """angular radius of the lights of --look, as seen from the hair: larger lights soften shadows and highlights;
+    lights of a scene file have the key `radius` instead [0 to 45 deg; default 0]"""
     sky: Union[Numbers, str]
     """color of the ambient light from above (+y), sRGB [0 to 1; default #5c6066]"""
     ground: Union[Numbers, str]

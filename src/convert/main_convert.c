@@ -52,8 +52,8 @@ static const Option OPTIONS[] = {
      "axis of the hair files that points up; auto: as the file says, otherwise z in Cem Yuksel's "
      ".hair files and y in all others [default auto]"},
     {"points-per-strand", 0, OPTION_WHOLE, AT(points), "N", 2, 65535,
-     "points per strand in .ply and .npy files that only list points, and vertices per cubic curve "
-     "[default: found from the gaps between strands; 1 to 4 per curve segment]"},
+     "points per strand of .ply and .npy point lists; vertices per cubic curve of USD and Alembic "
+     "files [default: from the gaps between strands; 1 to 4 per curve segment]"},
     {"array", 0, OPTION_STRING, AT(array), "NAME", 0, 0,
      "name of the array of positions in a .npz file [default: positions, points, or the first "
      "array of a suitable shape]"},
