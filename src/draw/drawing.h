@@ -32,8 +32,9 @@ int drawing_display(const RendererOptions *options);
 // A plain opaque background is a colour of the display, not light, so that it shows through thin
 // hair as much as it would behind a transparent picture. With a tone curve it is the backing: hair,
 // mesh and floor are drawn over nothing, and each pixel's tone-mapped colour is laid over the
-// backing (tone_over in shared_math.h). Without a tone curve the two ways are the same, and the
-// background is light behind everything. An environment is light, too, and hides the backing.
+// backing (tone_over in shared_math.h). Without a tone curve the background is light behind
+// everything; the two ways differ only where light is brighter than white. An environment is light,
+// too, and hides the backing.
 
 // The light behind everything: linear RGB, premultiplied, and its opacity.
 void drawing_background(const RendererOptions *options, float light[4]);

@@ -28,3 +28,8 @@ RendererOptions renderer_options_of(const RunParams *run)
     if (options.backdrop) options.background[3] = 1;
     return options;
 }
+
+int renderer_options_channels(const RunParams *run)
+{
+    return run->aov == AOV_NONE && renderer_options_of(run).background[3] < 1 ? 4 : 3;
+}

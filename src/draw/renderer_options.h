@@ -66,6 +66,10 @@ typedef struct RendererOptions {
 // depend on more than the parameters; they stay 0.
 RendererOptions renderer_options_of(const RunParams *run);
 
+// The channels of images that are drawn with these parameters: 4 with a transparent background, 3
+// otherwise. Images of an AOV are opaque.
+int renderer_options_channels(const RunParams *run);
+
 // Hair to be drawn. The material is that of its section; `radius` is the fibre radius at the root
 // in metres (paint_auto_radius where the section has none). `head`: where the hair's head is; NULL:
 // at the origin.

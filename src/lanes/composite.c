@@ -16,7 +16,7 @@
 
 enum {
     BATCH = 128,                          // ribbons at a time
-    TOUCHES = 2048,                       // touches that are listed before they are drawn
+    TOUCHES = 2048,                       // touches that are listed before they are laid
     USUAL = 2,                            // cells that a ribbon usually touches in a row
     LAID = TOUCHES + BLOCK_CELLS + USUAL, // visible touches that can wait for colours
     WAITING = 8 * BATCH,                  // ribbons that can wait for colours
@@ -373,6 +373,7 @@ SIMD_INLINE void add_colors(const Block *block, BlockForm form, const Ribbons *r
                             SimdLevel level, CompositeScratch *scratch)
 {
     Waiting *w = &scratch->waiting;
+    if (w->ribbons == 0) return;
     shade(ribbons, level, scratch);
     for (int t = 0; t < w->count; ++t)
         add_color(w, w->touches[t].ribbon, form, &w->laid[t], &block->cells[w->touches[t].cell]);
@@ -386,6 +387,7 @@ SIMD_INLINE void lay(const Block *block, BlockForm form, const Ribbons *ribbons,
     Batch *batch = &scratch->batch;
     Waiting *w = &scratch->waiting;
     float least = ribbons->least_seen;
+    if (count == 0) return;
     if (w->ribbons == WAITING || w->count + count > LAID)
         add_colors(block, form, ribbons, level, scratch);
     int first = w->ribbons, laid = w->count;

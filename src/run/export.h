@@ -37,9 +37,9 @@ Result exporter_check(const char *text, int frame_count, Error *error);
 // texture coordinates, colours and other attributes that all sections have; several sections become
 // groups. USD and Alembic files also contain the sections' widths and colours. They hold all frames
 // in one file, as does .npz, which keeps them in memory until the end. `frame_count`: number of
-// frames to come. All arguments must outlive
-// the exporter. Errors of exporter_check, RESULT_FAILED if the file can't be created or memory is
-// short. A zeroed struct may be destroyed; destroying discards an unfinished file.
+// frames to come. All arguments must outlive the exporter. Errors of exporter_check, RESULT_FAILED
+// if the file can't be created or memory is short. A zeroed struct may be destroyed; destroying
+// discards an unfinished file.
 Result exporter_create(Exporter *exporter, const char *text, int frame_count,
                        const Simulation *simulation, const Strands *strands, Error *error);
 void exporter_destroy(Exporter *exporter);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/images_output.h"
 #include "base/target.h"
+#include "draw/renderer_options.h"
 
 #include <cglm/mat4.h>
 #include <string.h>
@@ -43,8 +44,8 @@ Result images_output_check(const RunParams *run, int frame_count, Error *error)
 {
     ImagesForm form;
     TRY(images_output_form(&form, run, error));
-    bool opaque = run->background[3] >= 1 || run->environment_background;
-    const OutputOptions options = describe(run, opaque ? 3 : 4, form.kind, frame_count);
+    const OutputOptions options =
+        describe(run, renderer_options_channels(run), form.kind, frame_count);
     return output_check(&options, error);
 }
 

@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/interrupt_install.h"
 #include "base/program.h"
-#include "run/caption.h"
 #include "run/render_help.h"
 #include "run/run.h"
 
@@ -11,12 +10,10 @@
 
 #include <string.h>
 
-// Runs --check: first the names (caption words, solvers), then the hair files.
+// Runs --check: first the options, then the hair files.
 static Result check(const Scene *scene, Error *error)
 {
-    TRY(caption_check(scene->run.caption, error));
-    for (uint32_t i = 0; i < scene->section_count; ++i)
-        TRY(solver_check(&scene->sections[i].params, error));
+    TRY(run_check(scene, error));
     error->text[0] = 0; // the report on stdout names all errors
     return assets_check(scene, stdout);
 }

@@ -47,8 +47,8 @@ typedef struct OutputCounters {
 Result output_check(const OutputOptions *options, Error *error);
 
 // Refuses a terminal, creates the folder if needed, tests that a file can be created there, starts
-// ffmpeg for a video, and starts a worker. Errors of output_check, otherwise RESULT_FAILED
-// with path and reason.
+// ffmpeg for a video, and starts a worker. Errors of output_check, otherwise RESULT_FAILED with
+// path and reason.
 Result output_create(Output **output, const OutputOptions *options, Error *error);
 
 // Lends an image of the pool, with undefined pixels. Blocks while all images are waiting or being

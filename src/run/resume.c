@@ -2,6 +2,7 @@
 #include "run/resume.h"
 #include "base/bytes.h"
 #include "base/target.h"
+#include "draw/renderer_options.h"
 #include "image/exr_file.h"
 #include "image/pfm.h"
 #include "image/png.h"
@@ -78,7 +79,8 @@ static Result compare_form(const Search *search, const Image *image, const char 
     const RunParams *run = search->run;
     const Target *target = &search->images;
     ImageKind kind = target->floats ? IMAGE_FLOAT : run->depth == DEPTH_16 ? IMAGE_16 : IMAGE_8;
-    bool alpha = target->format == TARGET_EXR || (run->background[3] < 1 && !target->floats);
+    bool alpha =
+        target->format == TARGET_EXR || (renderer_options_channels(run) == 4 && !target->floats);
     char was[40], expected[40];
     snprintf(was, sizeof was, "%d x %d pixels", image->width, image->height);
     snprintf(expected, sizeof expected, "%d x %d", run->size[0], run->size[1]);

@@ -119,8 +119,7 @@ static Result check_sheet(const RunParams *run, Error *error)
         sheet[0], sheet[1]);
 }
 
-// Checks everything that can be checked before a file is opened.
-static Result check_values(const Scene *scene, Error *error)
+Result run_check(const Scene *scene, Error *error)
 {
     const RunParams *run = &scene->run;
     TRY(check_target(run, run->output, target_parse, error));
@@ -225,12 +224,13 @@ static void report_steps(const Simulation *simulation)
             (long long)schedule->settling);
 }
 
-// Prints an automatic camera as values of the options that set it.
+// Prints an automatic camera as values of the options that set it, unless the scene moves it.
 static void report_camera(const Run *run)
 {
     const RunParams *params = &run->scene.run;
     const float *eye = run->framing.eye, *target = run->framing.target;
-    if (!params->verbose || !(params->eye.automatic || params->target.automatic)) return;
+    bool moves = track_is_given(&run->scene.eye) || track_is_given(&run->scene.target);
+    if (!params->verbose || moves || !(params->eye.automatic || params->target.automatic)) return;
     if (!params->eye.automatic) eye = params->eye.value;
     if (!params->target.automatic) target = params->target.value;
     fprintf(stderr, "camera: --eye=%.9g,%.9g,%.9g --target=%.9g,%.9g,%.9g\n", (double)eye[0],
@@ -330,7 +330,7 @@ static Result prepare(Run *run, Error *error)
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
     activity_start(stderr, params->quiet);
-    TRY(check_values(&run->scene, error));
+    TRY(run_check(&run->scene, error));
     TRY(check_cache(params, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
                     error));

@@ -32,6 +32,10 @@ typedef struct Run {
     double begin_ms, loaded_ms, ready_ms; // clock_ms
 } Run;
 
+// Checks all that can be checked before a file is opened: names, paths (run_paths.h), and whether
+// the outputs can hold the frames. RESULT_USAGE or RESULT_BAD_INPUT.
+Result run_check(const Scene *scene, Error *error);
+
 // Opens everything, draws all frames and finishes the files. Reports on standard error unless
 // --quiet. Errors of every part; must be called once only.
 Result run_go(Run *run, Error *error);

@@ -20,9 +20,8 @@ typedef struct VideoOptions {
 Result video_check(const VideoOptions *options, Error *error);
 
 // Starts ffmpeg with a temporary file in the folder of `path`, in its own process group, so that ^C
-// on the terminal does not reach it. Errors of video_check;
-// RESULT_FAILED if ffmpeg is missing (the message names the Debian package) or the file can't be
-// created.
+// on the terminal does not reach it. Errors of video_check; RESULT_FAILED if ffmpeg is missing (the
+// message names the Debian package) or the file can't be created.
 Result video_create(Video **video, const VideoOptions *options, Error *error);
 
 // Appends a frame of exactly the initial size and channels. Blocks while ffmpeg is busy. If ffmpeg

@@ -16,10 +16,11 @@
 
 #include <cmocka.h>
 
-enum { MOST = 1008, BLOCK_X = 128, BLOCK_Y = 64 };
+// LONG: more ribbons than wait for their colours at a time.
+enum { MOST = 1008, LONG = 3008, BLOCK_X = 128, BLOCK_Y = 64 };
 
-static ScreenPoint points[2 * MOST + 1];
-static uint64_t order[MOST];
+static ScreenPoint points[2 * LONG + 1];
+static uint64_t order[LONG];
 static Cell cells[BLOCK_CELLS];
 static float hidden[BLOCK_CELLS][CELL_PIXELS];
 static const Block BLOCK = {cells, hidden, BLOCK_X, BLOCK_Y};
@@ -36,11 +37,11 @@ typedef struct Ribbon {
     float a[2], b[2], half_width[2], near[2], color[2][3];
 } Ribbon;
 
-static Ribbon ribbons[MOST];
+static Ribbon ribbons[LONG];
 static LaneHair hair = {.points = 2,
-                        .tiles = MOST / STRAND_TILE,
+                        .tiles = LONG / STRAND_TILE,
                         .caster.material = {.vertex_count = 2, .smooth_parts = 1}};
-static const LaneHairs HAIRS = {&hair, 1, MOST / STRAND_TILE, 2 * MOST};
+static const LaneHairs HAIRS = {&hair, 1, LONG / STRAND_TILE, 2 * LONG};
 static Shades shades;
 
 static float level(double value)
@@ -207,6 +208,16 @@ static void ribbons_are_laid_under_each_other(void **state)
     }
 }
 
+static void colours_are_added_in_order_in_long_lists(void **state)
+{
+    (void)state;
+    make_ribbons(12, LONG, 0.3, 0.1);
+    clear_block(0);
+    assert_true(compare(LONG, BLOCK_OPEN, 0, 0) < 4e-5);
+    clear_block(0.3f);
+    assert_true(compare(LONG, BLOCK_NEAREST, 0, 4) < 4e-5);
+}
+
 // At most 1/1024 of the light may be missing.
 static void skipped_ribbons_change_a_pixel_by_at_most_a_1024th(void **state)
 {
@@ -366,7 +377,7 @@ static int setup(void **state)
     (void)state;
     Error error = {{0}};
     scratch = aligned_alloc(64, composite_scratch_size());
-    return scratch && shades_begin(&shades, 2 * MOST, &error) == RESULT_OK ? 0 : 1;
+    return scratch && shades_begin(&shades, 2 * LONG, &error) == RESULT_OK ? 0 : 1;
 }
 
 static int teardown(void **state)
@@ -381,6 +392,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ribbons_are_laid_under_each_other),
+        cmocka_unit_test(colours_are_added_in_order_in_long_lists),
         cmocka_unit_test(skipped_ribbons_change_a_pixel_by_at_most_a_1024th),
         cmocka_unit_test(ribbons_that_are_hardly_seen_look_like_the_others),
         cmocka_unit_test(light_of_what_is_hardly_seen_is_made_up_for),

@@ -62,7 +62,10 @@ if command -v ffmpeg >/dev/null; then
     done
     if [ "$(find "$work/several" -type f | wc -l)" = 19 ]; then good; else bad "other files than two videos, a sheet, an animation and 15 frames are left"; fi
     # shellcheck disable=SC2086
-    run 2 assets/fur.tfx mp4 frames -o "$work/clear" $small -s 0.1 -q --background transparent; says ".mp4 cannot hold a transparent background"
+    : >"$work/runs"
+    # shellcheck disable=SC2086
+    TRACTRIX_BIN="$work/counted" run 2 assets/fur.tfx mp4 frames -o "$work/clear" $small -s 0.1 -q --background transparent; says ".mp4 cannot hold a transparent background"
+    if grep -q -- '--cache' "$work/runs"; then bad "it was simulated before"; else good; fi
 
     claim "--contact-sheet and --every need no second drawing"
     : >"$work/runs"
@@ -71,7 +74,18 @@ if command -v ffmpeg >/dev/null; then
     if [ "$(grep -c -- '--from-cache' "$work/runs")" = 1 ]; then good; else bad "frames were drawn more than once"; fi
     turns=$work/own_sheet stream fur_sheet.png png,192,96,rgb24,1
     turns=$work/own_sheet stream fur.gif gif,64,48,bgra,5
-    run 2 assets/fur.tfx sheet --contact-sheet 3; one_line; says "expected WxH"
+    for tiles in 3 0x3 08x3 3x1000 ''; do run 2 assets/fur.tfx sheet --contact-sheet "$tiles"; one_line; says "expected WxH"; done
+    run 2 assets/fur.tfx gif --contact-sheet 3x2; one_line; says "expected the format sheet"
+
+    claim "an --every of 1 holds for animations, too; a scene's own does not count"
+    # shellcheck disable=SC2086
+    run 0 assets/fur.tfx mp4 gif --every 1 -o "$work/each" $small -s 0.5 -q
+    turns=$work/each stream fur.gif gif,64,48,bgra,15
+    cp assets/fur.tfx "$work/fur.tfx"
+    printf '{"sections": [{"file": "fur.tfx"}], "every": 2}' >"$work/halved.json"
+    # shellcheck disable=SC2086
+    run 0 "$work/halved.json" webm frames -o "$work/halved" $small -s 0.1 -q
+    if [ "$(find "$work/halved/halved" -name 'frame_*.png' | wc -l)" = 3 ]; then good; else bad "not 3 frames"; fi
     if [ "$(find "$work/once" | wc -l)" = 34 ]; then good; else bad "other files than 30 frames, a sheet and an animation are left"; fi
 else
     skip "ffmpeg is not installed"

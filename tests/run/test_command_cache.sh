@@ -153,6 +153,9 @@ name=t_%d.png; to=-o
 go "2 frames in" --frames 2 --background transparent
 go "2 of 2 frames are already written" --frames 2 --background transparent
 go "2 existing files will be written again" --frames 2
+name=c_%d.png; to=-o
+go "2 frames in" --frames 2 --aov coverage --background transparent
+go "2 of 2 frames are already written" --frames 2 --aov coverage --background transparent
 name=x_%d.pfm; to=-o
 go "2 frames in" --frames 2
 mv "$work/again/x_.pfm.scenes" "$work/lines"

@@ -267,6 +267,8 @@ for words in "-o $work/two.png" "-o $work/two.mp4 --background transparent" "-o 
     run 2 assets/curls.tfx --followers 0 --frames 2 $words; one_line; says "two"
 done
 none "$work/two"
+# Images of an AOV are opaque, whatever the background.
+run 0 assets/curls.tfx --followers 0 --frames 2 --size 32x32 --aov coverage --background transparent -q -o "$work/two.y4m"; is_file "$work/two.y4m"
 
 claim "one .npz file takes all frames, those of one for each frame"
 run 0 assets/curls.tfx --followers 0 --frames 3 --first 1 -q --export "$work/all.npz"

@@ -292,7 +292,8 @@ static void read_strands(Npz *npz)
     Reader *reader = npz->reader;
     Held held = {0};
     uint32_t *sizes = NULL;
-    if (!npz->source->wishes.array && find_name(npz, "faces") >= 0)
+    bool mesh = find_name(npz, "faces") >= 0 && find_name(npz, "sizes") < 0;
+    if (!npz->source->wishes.array && mesh)
         reader_fail(reader, "a mesh, not hair: " FOREIGN_WANTS_HAIR);
     else if (find_positions(npz, &held) >= 0) {
         Layout layout = layout_of(&held.array);
