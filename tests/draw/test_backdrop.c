@@ -49,7 +49,7 @@ static Environment make_environment(void)
 // The direction of a pixel, by the inverse of the camera's matrix.
 static void find_way(const DrawParams *draw, int x, int y, float way[3])
 {
-    mat4 clip_from_world, back;
+    mat4 clip_from_world = {{0}}, back;
     vec4 ends[2];
     memcpy(clip_from_world, draw->clip_from_world, sizeof clip_from_world);
     glm_mat4_inv(clip_from_world, back);
