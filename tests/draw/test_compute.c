@@ -112,6 +112,9 @@ static void pictures_are_those_of_blocks(void **state)
     // Where compute's arithmetic differs from C's, the two may leave out a contribution of 1/1024
     // in different pixels: near black sRGB has 12.92 * 255 levels.
     const double most = studio.gpu.software && !studio.gpu.ulps ? 1.01 : 1 + 12.92 * 255 / 1024;
+    // Rounding to whole levels turns a difference of d levels into one level in the share d of the
+    // pixels, so the RMSE is the root of the mean d: 0.06 for 0.0036. Floats differ by 0.011 (RMS).
+    const double rounded = 0.06, unrounded = 0.05;
     add_hair();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i) {
         RendererOptions options = kinds[i];
@@ -123,7 +126,8 @@ static void pictures_are_those_of_blocks(void **state)
         if (nearest)
             assert_true(found.share <= 1e-3);
         else
-            assert_true(found.rmse <= 0.05 && found.largest <= most);
+            assert_true(found.rmse <= (options.kind == IMAGE_8 ? rounded : unrounded) &&
+                        found.largest <= most);
     }
 }
 
