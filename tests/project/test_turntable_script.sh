@@ -66,6 +66,11 @@ if command -v ffmpeg >/dev/null; then
     # shellcheck disable=SC2086
     TRACTRIX_BIN="$work/counted" run 2 assets/fur.tfx mp4 frames -o "$work/clear" $small -s 0.1 -q --background transparent; says ".mp4 cannot hold a transparent background"
     if grep -q -- '--cache' "$work/runs"; then bad "it was simulated before"; else good; fi
+    # Hair with a defect is repaired; a file that is not there gets its message.
+    printf 'numStrands 1\nis sorted 1\nstrand 0 numVerts 3 texcoord 0 0\n0 0 0\n0 -0.1 0\n0 -0.1 0\n' >"$work/mended.tfx"
+    # shellcheck disable=SC2086
+    run 0 "$work/mended.tfx" mp4 -o "$work/mended" $small --unit m -s 0.1 -q; is_file "$work/mended/mended.mp4"
+    run 3 "$work/none.tfx" mp4 -o "$work/mended"; one_line; says "none.tfx"
 
     claim "--contact-sheet and --every need no second drawing"
     : >"$work/runs"
