@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/colors.h"
 
-#include "base/suggest.h"
-
 #include <strings.h>
 
 // Hair colours are means over a head in the studio light, not colours of highlights. All lie
@@ -39,15 +37,12 @@ const ColorName COLOR_NAMES[COLOR_NAME_COUNT] = {
     {"salt-and-pepper", NULL, "#6f6b66"},
 };
 
-const char *colors_find(const char *name, bool of_hair, const char **nearest)
+const char *colors_find(const char *name, bool of_hair)
 {
-    const char *names[COLOR_NAME_COUNT];
     for (size_t i = 0; i < COLOR_NAME_COUNT; i++) {
         const ColorName *color = &COLOR_NAMES[i];
-        names[i] = color->name;
-        if (strcasecmp(names[i], name) != 0) continue;
+        if (strcasecmp(color->name, name) != 0) continue;
         return color->hair && (of_hair || !color->css) ? color->hair : color->css;
     }
-    if (nearest) *nearest = suggest_nearest(name, names, COLOR_NAME_COUNT);
     return NULL;
 }

@@ -17,6 +17,5 @@ enum { COLOR_NAME_COUNT = 29 };
 extern const ColorName COLOR_NAMES[COLOR_NAME_COUNT];
 
 // The value of a name (case-insensitive) as "#rrggbb": that of hair (`of_hair`), otherwise that of
-// CSS if it has one. NULL if there is no such name; *nearest, if not NULL, is then a similar name
-// or NULL.
-const char *colors_find(const char *name, bool of_hair, const char **nearest);
+// CSS if it has one. NULL if there is no such name.
+const char *colors_find(const char *name, bool of_hair);

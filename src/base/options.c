@@ -248,7 +248,9 @@ static Result set_option(const OptionsArgument *argument, char *values, Error *e
     switch (option->kind) {
     case OPTION_SWITCH:
         if (!on && strcmp(argument->text, "false") != 0)
-            return refuse(argument, "true or false", NULL, error);
+            return refuse(argument, "true or false",
+                          suggest_nearest(argument->text, (const char *[]){"true", "false"}, 2),
+                          error);
         memcpy(at, &on, sizeof on);
         return RESULT_OK;
     case OPTION_MAYBE:

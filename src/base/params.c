@@ -231,8 +231,31 @@ typedef struct Input {
     Error *error;
 } Input;
 
+// The words that a value of this kind may be: choices, "auto", units, names of colours.
+enum { WORDS_MOST = COLOR_NAME_COUNT + LENGTH_UNIT_COUNT + 2 };
+static size_t list_words(const ParamInfo *info, const char *words[WORDS_MOST])
+{
+    ParamKind kind = info->kind;
+    size_t count = 0;
+    for (; info->choices[count]; count++) {
+        assert(count < WORDS_MOST);
+        words[count] = info->choices[count];
+    }
+    if (FORMS[kind].automatic || kind == PARAM_AUTO_COLOR) words[count++] = "auto";
+    if (kind == PARAM_BACKGROUND) words[count++] = "transparent";
+    if (kind == PARAM_BOOL) words[count++] = "true", words[count++] = "false";
+    if (kind == PARAM_UNIT)
+        for (int i = 0; i < LENGTH_UNIT_COUNT; i++) words[count++] = LENGTH_UNITS[i].word;
+    if (kind == PARAM_COLOR || kind == PARAM_BACKGROUND || kind == PARAM_AUTO_COLOR)
+        for (int i = 0; i < COLOR_NAME_COUNT; i++) words[count++] = COLOR_NAMES[i].name;
+    return count;
+}
+
+// `nearest`: the nearest permitted number; NULL: the nearest permitted word, if one is near.
 static Result refuse(const Input *input, const char *nearest)
 {
+    const char *words[WORDS_MOST];
+    if (!nearest) nearest = suggest_nearest(input->text, words, list_words(input->info, words));
     char expected[200];
     params_describe(input->info, expected, sizeof expected);
     char got[64];
@@ -303,11 +326,11 @@ static Result parse_numbers(const Input *input, void *field)
 
 static Result parse_color(const Input *input, float value[3])
 {
-    const char *text = input->text, *nearest = NULL;
+    const char *text = input->text;
     if (isalpha((unsigned char)text[0])) {
         bool seen = input->info->group == GROUP_HAIR && input->info->kind == PARAM_COLOR;
-        text = colors_find(text, seen, &nearest);
-        if (!text) return refuse(input, nearest);
+        text = colors_find(text, seen);
+        if (!text) return refuse(input, NULL);
     }
     if (text[0] != '#') return parse_numbers(input, value);
     const char *digits = text + 1;
@@ -326,10 +349,9 @@ static const struct {
 static Result parse_choice(const Input *input, int *value)
 {
     const char *const *choices = input->info->choices;
-    int count = 0;
-    for (; choices[count]; count++) {
-        if (strcmp(input->text, choices[count]) != 0) continue;
-        *value = count;
+    for (int i = 0; choices[i]; i++) {
+        if (strcmp(input->text, choices[i]) != 0) continue;
+        *value = i;
         return RESULT_OK;
     }
     for (size_t i = 0; i < sizeof REPLACED / sizeof *REPLACED; i++)
@@ -337,7 +359,7 @@ static Result parse_choice(const Input *input, int *value)
             strcmp(input->text, REPLACED[i].word) == 0)
             return error_set(input->error, RESULT_USAGE, "'%s' was removed: use '%s' instead",
                              input->text, REPLACED[i].instead);
-    return refuse(input, suggest_nearest(input->text, choices, (size_t)count));
+    return refuse(input, NULL);
 }
 
 static Result parse_profile(const Input *input, ProfileNumber *number)
@@ -365,9 +387,12 @@ Result params_parse(const ParamInfo *info, void *params, const char *text, Error
         return RESULT_OK;
     case PARAM_COLOR:
         return parse_color(&input, floats);
-    case PARAM_AUTO_COLOR:
-        *(AutoVec3 *)field = (AutoVec3){.automatic = strcmp(text, "auto") == 0};
-        return *(bool *)field ? RESULT_OK : parse_color(&input, ((AutoVec3 *)field)->value);
+    case PARAM_AUTO_COLOR: {
+        AutoVec3 color = {.automatic = strcmp(text, "auto") == 0};
+        if (!color.automatic) TRY(parse_color(&input, color.value));
+        *(AutoVec3 *)field = color;
+        return RESULT_OK;
+    }
     case PARAM_BACKGROUND:
         if (strcmp(text, "transparent") == 0) {
             memset(floats, 0, 4 * sizeof *floats);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/bench_options.h"
 #include "base/options.h"
+#include "base/suggest.h"
 #include "report/shell_words.h"
 
 #include <math.h>
@@ -344,16 +345,18 @@ bool bench_options_part(const BenchOptions *options, const char *name)
 Result bench_options_check_list(const char *option, const char *text, const char *const *names,
                                 Error *error)
 {
-    char all[256] = "";
-    for (const char *const *name = names; *name; ++name) {
-        size_t at = strlen(all);
-        snprintf(all + at, sizeof all - at, "%s%s", at ? "," : "", *name);
-    }
+    size_t count = 0;
+    while (names[count]) count++;
     for (size_t part; text && *text; text += part + (text[part] == ',')) {
         part = strcspn(text, ",");
-        if (!lists(all, text, part))
-            return error_set(error, RESULT_USAGE, "%s: no %s '%.*s'; there are %s", option,
-                             option + strspn(option, "-"), (int)part, text, all);
+        char word[64], words[300];
+        snprintf(word, sizeof word, "%.*s", (int)part, text);
+        size_t i = 0;
+        while (i < count && strcmp(names[i], word) != 0) i++;
+        if (i == count)
+            return error_set(error, RESULT_USAGE, "%s: no %s '%s': %s", option,
+                             option + strspn(option, "-"), word,
+                             suggest_words(words, sizeof words, word, names, count));
     }
     return RESULT_OK;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/caption.h"
+
+#include "base/suggest.h"
 #include "scene/schedule.h"
 
 #include <stb_easy_font.h>
@@ -27,11 +29,16 @@ Result caption_check(const char *words, Error *error)
 {
     size_t length;
     for (const char *at = words; *words; at += length + 1) {
-        if (find_word(at, &length) == WORD_COUNT)
+        if (find_word(at, &length) == WORD_COUNT) {
+            char word[64];
+            snprintf(word, sizeof word, "%.*s", (int)length, at);
+            const char *nearest = suggest_nearest(word, WORDS, WORD_COUNT);
             return error_set(error, RESULT_USAGE,
-                             "--caption: got '%.*s', expected the words frame, time, file, solver, "
-                             "or some of them, separated by commas",
-                             (int)length, at);
+                             "--caption: got '%s', expected the words frame, time, file, solver, "
+                             "or some of them, separated by commas%s%s%s",
+                             word, nearest ? " (nearest: " : "", nearest ? nearest : "",
+                             nearest ? ")" : "");
+        }
         if (!at[length]) break;
     }
     return RESULT_OK;

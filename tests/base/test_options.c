@@ -114,6 +114,7 @@ static void mistakes_name_the_option_and_what_was_expected(void **state)
         {"--size nan", "--size: got 'nan', expected a number from 0.5 to 2"},
         {"--kind tow", "--kind: got 'tow', expected one, two or three (nearest: two)"},
         {"--kind seven", "--kind: got 'seven', expected one, two or three"},
+        {"--fast=ture", "--fast: got 'ture', expected true or false (nearest: true)"},
         {"--fast=maybe", "--fast: got 'maybe', expected true or false"},
         {"--turn=1", "--turn: got '1', expected no value"},
         {"--no-size", "--no-size: --size takes a value: only switches have --no-"},

@@ -117,7 +117,7 @@ run 2 stress --algo hybrid --allow 1.1; says "--allow"
 
 claim "wrong usage ends with 2 and one line that helps"
 run 2 stepp; says "did you mean 'step'"
-run 2 accuracy --part motion; says "motions"
+run 2 accuracy --part motion; says "no part 'motion': did you mean 'motions'?"
 run 2 accuracy --algo rope --rope-iterations 0; says "--rope-iterations"
 run 2 accuracy --variant thesis; says "--algo"
 run 2 speed --set 2k16; says "2k16"

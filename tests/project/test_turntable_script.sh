@@ -129,5 +129,10 @@ is_file "$work/late/fur_sheet.png"
 claim "what it can't do is refused"
 run 2 -o; one_line; says "expected DIR"; run 2 --seconds x assets/fur.tfx; one_line; says "got 'x'"; run 2 --output= assets/fur.tfx; one_line
 run 2 sheet; one_line; says "no asset"
+for wrong in "--colour red" "-q --colour red --size 16x16"; do
+    # shellcheck disable=SC2086 # lists of words
+    run 2 assets/fur.tfx sheet $wrong; one_line; says "--colour: no such option: did you mean '--color'?"
+done
+run 2 assets/fur.tfx sheet --albedo blnod; one_line; says "nearest: blond"
 run 2; one_line; says "no asset"; run 2 --no-such-option; one_line; run 2 assets/fur.tfx avi; one_line; run 3 "$work/none.tfx" sheet; run 2 assets/fur.tfx sheet -- --no-such-flag
 finish

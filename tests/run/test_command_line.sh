@@ -140,6 +140,8 @@ done
 claim "usage errors name the nearest valid word and end with 2"
 run 2; one_line
 run 2 $hair; one_line; says "-o"
+run 2 $hair --background tranparent -o "$work/x/"; one_line; says "(nearest: transparent)"
+run 2 $hair --caption fram -o "$work/x/"; one_line; says "(nearest: frame)"
 run 2 $hair --farmes 3 -o "$work/x/"; one_line; says "frames"
 run 2 $hair --frames 0 -o "$work/x/"; one_line; says "frames"
 run 2 $hair --frames many -o "$work/x/"; one_line
