@@ -135,6 +135,49 @@ static void follows_poses(void **state)
     tractrix_simulation_destroy(simulation);
 }
 
+// Roots follow any rotation of the head, and 1e-6 is more than the rounding of float32 below 1 m. A
+// quaternion's length may differ from 1 by up to 1e-3, whatever its direction.
+static void roots_follow_any_rotation(void **state)
+{
+    float position[FIXTURE_VERTICES][3];
+    Random random = random_create(7, 0);
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, NONE);
+    library_positions(position);
+    for (int i = 0; i < 20; ++i) {
+        TractrixPose pose = {.translation = {0.1, -0.2, 0.3}};
+        double *q = pose.rotation, length = 0;
+        for (int k = 0; k < 4; ++k) q[k] = 2 * random_real(&random) - 1;
+        for (int k = 0; k < 4; ++k) length += q[k] * q[k];
+        for (int k = 0; k < 4; ++k) q[k] /= sqrt(length);
+        WELL(tractrix_simulation_advance(simulation, &pose, &error));
+        TractrixPositions moved = map(simulation, TRACTRIX_GUIDES);
+        for (uint32_t s = 0, at = 0; s < FIXTURE_STRANDS; at += library_sizes[s++]) {
+            const float *p = position[at];
+            float root[3];
+            for (int k = 0; k < 3; ++k) { // p + 2 w (q x p) + 2 q x (q x p), the product expanded
+                int a = (k + 1) % 3, b = (k + 2) % 3;
+                double along = q[0] * p[0] + q[1] * p[1] + q[2] * p[2];
+                double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+                root[k] = (float)(p[k] + 2 * q[3] * (q[a] * p[b] - q[b] * p[a]) +
+                                  2 * (along * q[k] - square * p[k]) + pose.translation[k]);
+            }
+            assert_near(&moved.position[4 * at], root, 1e-6f);
+        }
+        const double scales[] = {1 - 9e-4, 1 + 9e-4, 1 - 1.1e-3, 1 + 1.1e-3};
+        for (int n = 0; n < 4; ++n) {
+            TractrixPose scaled = pose;
+            for (int k = 0; k < 4; ++k) scaled.rotation[k] *= scales[n];
+            if (n < 2)
+                WELL(tractrix_simulation_place_body(simulation, 0, &scaled, &error));
+            else
+                library_refused(tractrix_simulation_place_body(simulation, 0, &scaled, &error),
+                                TRACTRIX_USAGE, "head.rotation");
+        }
+    }
+    tractrix_simulation_destroy(simulation);
+}
+
 // Keys of the scene and poses given by the host describe the same motion over frames of two steps
 // each, and move hair equally. Poses are interpolated by screw motions and keys linearly, which is
 // equal without rotation. The bound covers float32 positions at 0.5 m over 8 steps.
@@ -786,6 +829,7 @@ int main(void)
         cmocka_unit_test(refuses_bodies_that_are_not_there),
         cmocka_unit_test(maps_strands_in_their_order),
         cmocka_unit_test(follows_poses),
+        cmocka_unit_test(roots_follow_any_rotation),
         cmocka_unit_test(moves_as_the_scene_would),
         cmocka_unit_test(refuses_wrong_poses),
         cmocka_unit_test(follows_a_mesh),
