@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/json.h"
 #include "base/outfile.h"
+#include "base/quote.h"
 #include "base/suggest.h"
 
 #include <math.h>
@@ -69,9 +70,11 @@ static size_t name_place(const JsonPlace *place, char *text, size_t size)
 {
     size_t length = place->parent ? name_place(place->parent, text, size) : 0;
     const char *between = !place->parent ? "" : place->parent->parent ? "." : ": ";
-    if (place->key)
-        length += (size_t)snprintf(text + length, size - length, "%s%.80s", between, place->key);
-    else
+    if (place->key) {
+        char key[304]; // a path is shortened in its middle, so that the file's name is kept
+        quote_line(key, place->parent ? 84 : sizeof key, place->key);
+        length += (size_t)snprintf(text + length, size - length, "%s%s", between, key);
+    } else
         length += (size_t)snprintf(text + length, size - length, "[%zu]", place->index);
     return length < size ? length : size - 1;
 }

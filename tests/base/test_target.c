@@ -54,6 +54,34 @@ static void stills_and_videos_have_one_name(void **state)
     assert_name("x.gif", TARGET_VIDEO, 3, "x.gif");
 }
 
+// A dash, or a dash with a suffix, is standard output, in the formats that can be written in one
+// piece. A dash at the beginning of a longer name means nothing.
+static void dashes_are_standard_output(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        TargetFormat format;
+        TargetKind kind;
+        bool stream;
+    } cases[] = {
+        {"-", TARGET_PNG, TARGET_VIDEO, true},        {"-.png", TARGET_PNG, TARGET_VIDEO, true},
+        {"-.PNG", TARGET_PNG, TARGET_VIDEO, true},    {"-.y4m", TARGET_Y4M, TARGET_VIDEO, true},
+        {"-.pfm", TARGET_PFM, TARGET_STILL, true},    {"-.exr", TARGET_EXR, TARGET_STILL, true},
+        {"./-.y4m", TARGET_Y4M, TARGET_VIDEO, false}, {"-x.png", TARGET_PNG, TARGET_STILL, false},
+        {"--.pfm", TARGET_PFM, TARGET_STILL, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        Target target;
+        Error error = {{0}};
+        assert_int_equal(target_parse(&target, cases[i].text, &error), RESULT_OK);
+        assert_int_equal(target.format, cases[i].format);
+        assert_int_equal(target.kind, cases[i].kind);
+        assert_true(target.stream == cases[i].stream);
+        assert_true(target.floats == (cases[i].kind == TARGET_STILL && i != 7));
+        target_destroy(&target);
+    }
+}
+
 static void an_existing_folder_needs_no_slash(void **state)
 {
     Error error;
@@ -83,6 +111,10 @@ static void targets_without_sense_are_usage_errors(void **state)
                                         "x_%04d.png.mpg",
                                         ".png",
                                         ".mp4",
+                                        "-.jpg",
+                                        "-.mp4",
+                                        "-.",
+                                        "-x",
                                         ""};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Target target;
@@ -114,6 +146,7 @@ int main(void)
         TEST(frames_are_named_by_their_number),
         TEST(numbers_widen_beyond_their_digits),
         TEST(stills_and_videos_have_one_name),
+        TEST(dashes_are_standard_output),
         TEST(an_existing_folder_needs_no_slash),
         TEST(targets_without_sense_are_usage_errors),
         TEST(missing_folders_are_made_and_nothing_else),

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include <cmocka.h>
 
@@ -502,6 +503,24 @@ static void wrong_scene_files_are_refused_with_place_and_expectation(void **stat
     }
 }
 
+// The folder is shortened, not the name of the file.
+static void messages_name_a_file_in_a_folder_with_a_long_name(void **state)
+{
+    char folder[201], name[256];
+    Scene scene;
+    Error error = {{0}};
+    memset(folder, 'x', sizeof folder - 1);
+    folder[sizeof folder - 1] = 0;
+    assert_int_equal(mkdir(temporary_path(state, folder), 0777), 0);
+    snprintf(name, sizeof name, "%s/scene_of_a_long_folder.json", folder);
+    temporary_write(state, name, "{\"sections\": [{}]}", 0644);
+    Result result = scene_read(&scene, temporary_path(state, name), &error);
+    scene_destroy(&scene);
+    assert_int_equal(result, RESULT_BAD_INPUT);
+    const char *end = "/scene_of_a_long_folder.json: sections[0]: expected a key 'file'";
+    if (!strstr(error.text, end)) fail_msg("'%s' lacks '%s'", error.text, end);
+}
+
 static void every_truncation_of_a_scene_file_is_refused(void **state)
 {
     Scene scene;
@@ -574,6 +593,7 @@ int main(void)
         TEST(directions_of_light_are_read_as_they_were_written),
         cmocka_unit_test(a_file_name_that_is_no_utf_8_is_still_written),
         TEST(wrong_scene_files_are_refused_with_place_and_expectation),
+        TEST(messages_name_a_file_in_a_folder_with_a_long_name),
         TEST(every_truncation_of_a_scene_file_is_refused),
         TEST(deep_and_huge_files_are_refused_in_one_short_line),
     };
