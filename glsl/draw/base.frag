@@ -23,6 +23,9 @@ layout(binding = BIND_EDGE_DEPTH) uniform sampler2DMS edge_depth;
 layout(binding = BIND_BACKDROP) uniform samplerBuffer backdrop;
 #endif
 layout(location = 0) out vec4 base; // linear, premultiplied
+// Of the pixel's rim (kernel/edge.h): rgb: its light times its share; a: its share
+layout(location = 1) out vec4 rim;
+layout(location = 2) out float rim_depth;
 
 // The depth that hides hair, and the floor's depth.
 float depth = EDGE_NOWHERE, floor_depth = EDGE_NOWHERE;
@@ -49,6 +52,10 @@ void add_samples(ivec2 at, vec4 background)
         edge = edge || edge_parts(z[i], middle, steep);
     }
     depth = edge ? farthest : middle;
+    bool rims[EDGE_SAMPLES];
+    for (int i = 0; i < EDGE_SAMPLES; ++i)
+        rims[i] = edge && z[i] < floor_depth &&
+                  edge_rims(z[i], depth, edge_steep(z[i], draw_params.depth.x, draw_params.focal));
     vec4 color[EDGE_SAMPLES];
     float off[EDGE_SAMPLES];
     for (int i = 0; i < EDGE_SAMPLES; ++i) {
@@ -67,7 +74,12 @@ void add_samples(ivec2 at, vec4 background)
             off[i] = better ? abs(z[i] - other) : off[i];
         }
     }
-    for (int i = 0; i < EDGE_SAMPLES; ++i) add_sample(color[i] / float(EDGE_SAMPLES), z[i]);
+    for (int i = 0; i < EDGE_SAMPLES; ++i) {
+        vec4 light = color[i] / float(EDGE_SAMPLES);
+        add_sample(light, z[i]);
+        rim += rims[i] ? vec4(light.rgb, 1.0 / float(EDGE_SAMPLES)) : vec4(0.0);
+        rim_depth = rims[i] ? max(z[i], rim_depth) : rim_depth;
+    }
 }
 #endif
 
@@ -83,6 +95,8 @@ vec4 find_background()
 
 void main()
 {
+    rim = vec4(0.0);
+    rim_depth = 0.0;
 #if FLOOR
     vec3 way = ray_through(gl_FragCoord.xy);
     float along = (floor_middle.y - draw_params.eye.y) / way.y;

@@ -6,6 +6,7 @@
 //   PIXELS 1, 4: pixels of a lane, one above the other; GROUP_SIZE: lanes of a tile
 //   STAGED 1: ribbons are unpacked once, to shared memory   0: each lane unpacks them itself
 //   BASE 1: mesh or floor hide ribbons behind them; see also compute_pixels.glsl
+//   RIMS 1: the base has rims; needs BASE 1, NEAREST 0
 //   NEAREST 1: a ribbon that covers RIBBON_LEAST_COVERAGE of a pixel hides everything behind it
 //   DEPTH 1: the pixel shows the nearest ribbon's distance
 //   SAMPLES, KIND, TONE: see compute_pixels.glsl
@@ -178,6 +179,12 @@ ivec2 place = ivec2(0); // the lane's first pixel
 Numbers red = Numbers(0.0), green = Numbers(0.0), blue = Numbers(0.0);
 Numbers through = Numbers(1.0); // transmittance so far
 Numbers hidden = Numbers(0.0);  // 1/w of the opaque surface; 0: none
+#if RIMS
+layout(binding = BIND_RIM) uniform sampler2D rim_light;
+layout(binding = BIND_RIM_DEPTH) uniform sampler2D rim_depth;
+// The rim's 1/w and share of the pixel; transmittance of the ribbons before it. See kernel/edge.h.
+Numbers rim_near = Numbers(0.0), rim_share = Numbers(0.0), front = Numbers(1.0);
+#endif
 
 Numbers profile_area(Ribbon r, Numbers t)
 {
@@ -211,6 +218,11 @@ void draw(Ribbon r)
 #endif
     alpha *= through;
     through -= alpha;
+#if RIMS
+    Numbers before = step(rim_near, near);
+    front -= alpha * before;
+    alpha -= alpha * (1.0 - before) * rim_share;
+#endif
     red += alpha * (r.first.r + along * r.change.r);
     green += alpha * (r.first.g + along * r.change.g);
     blue += alpha * (r.first.b + along * r.change.b);
@@ -259,6 +271,13 @@ void hide()
         ivec2 p = place + ivec2(0, k);
         float z = is_in_base(p) ? texelFetch(mesh_depth, p, 0).x : 1.0;
         OF(hidden, k) = edge_inverse_w(z, draw_params.depth.x, draw_params.depth.y);
+#if RIMS
+        OF(rim_share, k) = is_in_base(p) ? texelFetch(rim_light, p, 0).a : 0.0;
+        OF(rim_near, k) = OF(rim_share, k) > 0.0
+                              ? edge_inverse_w(texelFetch(rim_depth, p, 0).x, draw_params.depth.x,
+                                               draw_params.depth.y)
+                              : 0.0;
+#endif
     }
 #endif
 }
@@ -268,8 +287,15 @@ vec4 light_of(int k)
 #if DEPTH
     return vec4(vec3(depth_shown(OF(hidden, k))), 1.0);
 #else
-    return vec4(OF(red, k), OF(green, k), OF(blue, k), 1.0 - OF(through, k)) +
-           OF(through, k) * light_behind(place + ivec2(0, k));
+    vec4 light = vec4(OF(red, k), OF(green, k), OF(blue, k), 1.0 - OF(through, k)) +
+                 OF(through, k) * light_behind(place + ivec2(0, k));
+#if RIMS
+    // What lies behind includes the rim as if all ribbons lay before it.
+    if (OF(rim_share, k) > 0.0)
+        light.rgb +=
+            (OF(front, k) - OF(through, k)) * texelFetch(rim_light, place + ivec2(0, k), 0).rgb;
+#endif
+    return light;
 #endif
 }
 

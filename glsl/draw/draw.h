@@ -28,6 +28,9 @@
 #define BIND_NODES  7
 #define BIND_HEADS  8
 #define BIND_BASE   9 // the image behind the hair: linear, premultiplied
+// Rims of that image's pixels, see base.frag. Ribbons bind their tables (BIND_SCATTER) again.
+#define BIND_RIM       10
+#define BIND_RIM_DEPTH 14
 
 // Used while the base is drawn, before the bindings above, except those for shadows.
 #define BIND_SURFACE      4 // see surface.frag

@@ -2,6 +2,7 @@
 // Blends a pixel's fragments: the LAYERS nearest in order, the rest behind them without order, and
 // all over the base, premultiplied and in linear light.
 //   BASE 0: only the background lies behind   1: the mesh, too
+//   RIMS 1: the base has rims (kernel/edge.h); needs BASE 1, DEPTH 0
 //   DEPTH 1: shows the distance of the nearest fragment, otherwise of the mesh
 //   SAMPLES: a pixel of the picture is the mean of SAMPLES x SAMPLES pixels of the lists
 //   MOST_TURNS: number of fragments that the driver's loops can visit
@@ -23,6 +24,10 @@ layout(binding = BIND_BASE) uniform sampler2D base;
 // The base has been drawn, so its texture unit is free.
 layout(binding = BIND_SURFACE) uniform sampler2D mesh_depth;
 #endif
+#endif
+#if RIMS
+layout(binding = BIND_RIM) uniform sampler2D rim_light;
+layout(binding = BIND_RIM_DEPTH) uniform sampler2D rim_depth;
 #endif
 layout(std430, binding = BIND_SHORTAGE_OUT) writeonly buffer Shortage { uint shortage; };
 layout(location = 0) out vec4 pixel_out; // sRGB with straight alpha; or premultiplied light
@@ -54,8 +59,9 @@ vec4 rest_color(ivec4 high, ivec4 low, int optical_depth)
 
 int count = 0; // fragments visited so far
 
-// The light of a pixel of the lists, premultiplied.
-vec4 blend(ivec2 pixel)
+// The light of a pixel of the lists, premultiplied: fragments that are at least as near as the 1/w
+// whose bits are `farthest`, over `behind`.
+vec4 blend(ivec2 pixel, int farthest, vec4 behind)
 {
     int link = int(
         texelFetch(heads, (pixel.y - int(draw_params.band.y)) * int(draw_params.band.x) + pixel.x)
@@ -69,7 +75,7 @@ vec4 blend(ivec2 pixel)
     while (link != 0 && count < MOST_TURNS) {
         ivec4 node = ivec4(texelFetch(nodes, link - 1));
         link = node.x;
-        ivec3 farther = node.yzw;
+        ivec3 farther = node.y >= farthest ? node.yzw : ivec3(0);
 #if LAYERS
         for (int i = 0; i < LAYERS; ++i) {
             bool nearer = abuffer_nearer(farther, layer[i]);
@@ -94,12 +100,7 @@ vec4 blend(ivec2 pixel)
 #endif
     return vec4(vec3(depth_shown(near)), 1.0);
 #else
-#if BASE
-    vec4 color = texelFetch(base, pixel, 0);
-#else
-    vec4 color = draw_params.background;
-#endif
-    color = over(rest_color(high, low, optical_depth), color);
+    vec4 color = over(rest_color(high, low, optical_depth), behind);
 #if LAYERS
     for (int i = LAYERS - 1; i >= 0; --i) color = over(abuffer_color(layer[i]), color);
 #endif
@@ -107,12 +108,32 @@ vec4 blend(ivec2 pixel)
 #endif
 }
 
+vec4 light_of(ivec2 pixel)
+{
+#if BASE
+    vec4 behind = texelFetch(base, pixel, 0);
+#else
+    vec4 behind = draw_params.background;
+#endif
+#if RIMS
+    vec4 rim = texelFetch(rim_light, pixel, 0);
+    if (rim.a > 0.0) { // a share of the pixel shows the rim, the rest what lies behind it
+        float near = edge_inverse_w(texelFetch(rim_depth, pixel, 0).x, draw_params.depth.x,
+                                    draw_params.depth.y),
+              rest = 1.0 - rim.a;
+        return rim.a * blend(pixel, floatBitsToInt(near), vec4(rim.rgb / rim.a, 1.0)) +
+               rest * blend(pixel, 0, max(behind - rim, 0.0) / max(rest, 1e-6));
+    }
+#endif
+    return blend(pixel, 0, behind);
+}
+
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy) * SAMPLES;
     vec4 color = vec4(0.0);
     for (int i = 0; i < SAMPLES * SAMPLES; ++i)
-        color += blend(pixel + ivec2(i % SAMPLES, i / SAMPLES));
+        color += light_of(pixel + ivec2(i % SAMPLES, i / SAMPLES));
     color *= 1.0 / float(SAMPLES * SAMPLES);
 #if TONE == 3
     pixel_out = color;

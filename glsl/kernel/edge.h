@@ -7,8 +7,10 @@
 //
 // The stored depth hides hair. At an edge it is the farthest depth of the pixel's samples: where
 // the background or a farther surface shows between the samples, hair in front of it must cover it.
-// (The nearest depth or the centre's depth would leave a fringe of background between a silhouette
-// and the hair behind it.)
+//
+// The samples that show a nearer surface are the pixel's rim: their share of the pixel, their
+// light, and the farthest of their depths. Hair behind the rim is visible in the rest of the pixel
+// only. So an edge is smooth before hair, too.
 #include "common/shared_math.h"
 #ifdef __STDC__
 #pragma once
@@ -41,6 +43,13 @@ SHARED_FUNCTION bool edge_parts(float z, float middle, float steep)
 {
     float off = z < middle ? middle - z : z - middle;
     return off > (z < EDGE_NOWHERE && middle < EDGE_NOWHERE ? steep : 0.0f);
+}
+
+// Whether a sample belongs to the rim of its pixel. farthest: depth of the pixel's samples;
+// steep: at the sample's depth.
+SHARED_FUNCTION bool edge_rims(float z, float farthest, float steep)
+{
+    return z < farthest && edge_parts(farthest, z, steep);
 }
 
 // The distance in depth between a sample and its own pixel's centre. Another centre is used only if

@@ -39,9 +39,12 @@ typedef struct LaneBase {
     int low[2];
     float *lit; // [3][lit_room / 3], owned: linear light of the surface, in rows like the surface's
     size_t lit_room;
-    uint16_t (*light)[4]; // [room], owned, as `depth`: of `shown`
+    uint16_t (*light)[4]; // [room], owned, as `depth` and `rim`: of `shown`
     float *depth;
+    BaseRim *rim;
     size_t room;
+    uint16_t *rimmed; // [rimmed_room], owned
+    size_t rimmed_room;
     BlockBase shown;                 // the last result
     DrawParams drawn;                // its parameters
     uint64_t mesh_version, shadowed; // for which it was drawn; `shadowed`: LaneShadow.version

@@ -21,6 +21,8 @@ void lane_base_destroy(LaneBase *base)
     free(base->lit);
     free(base->light);
     free(base->depth);
+    free(base->rim);
+    free(base->rimmed);
     *base = (LaneBase){0};
 }
 
@@ -53,10 +55,14 @@ static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error
     base->low[0] = mesh[0];
     base->low[1] = mesh[1];
     size_t lit = 3 * (size_t)base->surface.pitch * (size_t)base->surface.height,
-           count = (size_t)(all[2] - all[0]) * (size_t)(all[3] - all[1]);
-    size_t room = base->room;
+           count = (size_t)(all[2] - all[0]) * (size_t)(all[3] - all[1]),
+           words =
+               (size_t)((all[2] - all[0] + RIM_BITS - 1) / RIM_BITS) * (size_t)(all[3] - all[1]);
+    size_t room = base->room, rim_room = base->room;
     bool good = room_make(&base->lit, &base->lit_room, lit, sizeof *base->lit) &&
                 room_make(&base->light, &room, count, sizeof *base->light) &&
+                room_make(&base->rim, &rim_room, count, sizeof *base->rim) &&
+                room_make(&base->rimmed, &base->rimmed_room, words, sizeof *base->rimmed) &&
                 room_make(&base->depth, &base->room, count, sizeof *base->depth);
     if (!good) base->room = 0;
     base->shown = (BlockBase){.x = all[0],
@@ -64,7 +70,9 @@ static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error
                               .width = all[2] - all[0],
                               .height = all[3] - all[1],
                               .light = (const uint16_t(*)[4])(void *)base->light,
-                              .depth = base->depth};
+                              .depth = base->depth,
+                              .rimmed = base->rimmed,
+                              .rim = base->rim};
     return good ? RESULT_OK
                 : error_set(error, RESULT_FAILED, "no memory for %zu px of mesh and floor", count);
 }
@@ -96,11 +104,14 @@ typedef struct Finish {
     int samples, parts;
 } Finish;
 
-// Values of 16 px: premultiplied sums of all samples in front of the floor and behind it, and the
-// depth.
+// Values of 16 px: premultiplied sums of all samples in front of the floor and behind it, the
+// depth, and the rims of the pixels whose bits are set in `rimmed`.
 typedef struct Pixels {
     float front[4][W], behind[4][W], depth[W];
     float background[4][W];
+    float rim[3][W], rim_depth[W];
+    uint16_t rim_samples[W];
+    unsigned rimmed;
 } Pixels;
 
 // The 3 x 3 px around (x, y): depths at pixel centres and their addresses.
@@ -121,12 +132,23 @@ static Around look_around(const MeshSurface *surface, int x, int y)
     return around;
 }
 
+// Adds a sample to the rim of the pixel in lane k.
+static void add_rim(const float color[3], float z, int k, Pixels *pixels)
+{
+    bool first = !(pixels->rimmed >> k & 1);
+    for (int c = 0; c < 3; ++c) pixels->rim[c][k] = (first ? 0 : pixels->rim[c][k]) + color[c];
+    pixels->rim_depth[k] = first ? z : simd_max(z, pixels->rim_depth[k]);
+    pixels->rim_samples[k] = first ? 1 : (uint16_t)(pixels->rim_samples[k] + 1);
+    pixels->rimmed |= 1u << k;
+}
+
 // Resolves a pixel at an edge of the mesh, in lane k, from its four samples.
 static void add_edge(const Finish *finish, int x, int y, const float z[MESH_EDGES], float floor_z,
                      int k, Pixels *pixels)
 {
     const LaneBase *base = finish->base;
     const MeshSurface *surface = &base->surface;
+    const DrawParams *draw = finish->view.draw;
     const size_t plane = base->lit_room / 3;
     size_t at = (size_t)y * (size_t)surface->pitch + (size_t)x;
     Around around = look_around(surface, x, y);
@@ -140,11 +162,15 @@ static void add_edge(const Finish *finish, int x, int y, const float z[MESH_EDGE
             if (!(around.depth[n] < EDGE_NOWHERE && own < off)) continue;
             off = own, from = around.at[n], mesh = true;
         }
-        float(*to)[W] = z[i] < floor_z ? pixels->front : pixels->behind;
+        float(*to)[W] = z[i] < floor_z ? pixels->front : pixels->behind, color[4];
         for (int c = 0; c < 4; ++c) {
             float shown = c == 3 ? 1 : base->lit[(size_t)c * plane + from];
-            to[c][k] += (mesh ? shown : pixels->background[c][k]) / MESH_EDGES;
+            color[c] = (mesh ? shown : pixels->background[c][k]) / MESH_EDGES;
+            to[c][k] += color[c];
         }
+        if (z[i] < floor_z &&
+            edge_rims(z[i], pixels->depth[k], edge_steep(z[i], draw->depth[0], draw->focal)))
+            add_rim(color, z[i], k, pixels);
     }
 }
 
@@ -203,12 +229,22 @@ SIMD_INLINE void store(const LaneBase *base, int x, int y, const Pixels *pixels)
 {
     const BlockBase *shown = &base->shown;
     uint16_t halves[W][4];
-    size_t at = (size_t)(y - shown->y) * (size_t)shown->width + (size_t)(x - shown->x);
+    size_t at = (size_t)(y - shown->y) * (size_t)shown->width + (size_t)(x - shown->x),
+           words = (size_t)((shown->width + RIM_BITS - 1) / RIM_BITS);
     int left = shown->x + shown->width - x, count = left < W ? left : W;
     for (int k = 0; k < W; ++k)
         for (int c = 0; c < 4; ++c) halves[k][c] = half_of(pixels->front[c][k]);
     memcpy(base->light + at, halves, (size_t)count * sizeof *halves);
     memcpy(base->depth + at, pixels->depth, (size_t)count * sizeof *pixels->depth);
+    base->rimmed[(size_t)(y - shown->y) * words + (size_t)(x - shown->x) / RIM_BITS] =
+        (uint16_t)pixels->rimmed;
+    for (int k = 0; pixels->rimmed && k < count; ++k) {
+        if (!(pixels->rimmed >> k & 1)) continue;
+        BaseRim *rim = &base->rim[at + (size_t)k];
+        for (int c = 0; c < 3; ++c) rim->light[c] = half_of(pixels->rim[c][k]);
+        rim->samples = pixels->rim_samples[k];
+        rim->depth = pixels->rim_depth[k];
+    }
 }
 
 // The background in 16 px from (x, y) on.
@@ -236,6 +272,7 @@ SIMD_INLINE void finish_pixels(const Finish *finish, int x, int y)
     bool floored = finish->floor.kind != FLOOR_NONE &&
                    base_floor_find(&finish->floor, &finish->view, x, y, &floor);
     for (int k = 0; !floored && k < W; ++k) floor.depth[k] = EDGE_NOWHERE;
+    pixels.rimmed = 0;
     find_background(finish, x, y, pixels.background);
     if (column >= 0 && column < surface->pitch && row >= 0 && row < surface->height) {
         add_mesh(finish, column, row, floor.depth, &pixels);

@@ -274,21 +274,29 @@ SIMD_INLINE float through_limit(float least)
 // Blends ribbon i behind the cell's content, without colours: `laid` gets its visible share in each
 // pixel. x, y: the cell's first pixel in the block. Bit 0 of the result: more than `least` of the
 // ribbon is visible in some pixel, or any of it where much of the hair was skipped. Bit 1: in some
-// pixel the transmittance is still more than through_limit(least).
+// pixel the transmittance is still more than through_limit(least). `rims`: of the cell `at`; NULL:
+// it has none.
 SIMD_INLINE int lay_under(const Batch *restrict b, int i, float x, float y, BlockForm form,
                           float least, Cell *restrict cell, const float *restrict hidden,
-                          const float *restrict skipped, Laid *restrict laid)
+                          BlockRims *restrict rims, int at, const float *restrict skipped,
+                          Laid *restrict laid)
 {
     float open = through_limit(least);
     int seen = 0, through = 0;
     for (int k = 0; k < CELL_PIXELS; ++k) {
         float along = clamp_share(linear(&b->along, i, x + LANE_X[k], y + LANE_Y[k]));
         float alpha = coverage(b, i, x + LANE_X[k], y + LANE_Y[k], along);
-        if (form == BLOCK_OVER_MESH)
-            alpha = b->near[i] + along * b->near_change[i] >= hidden[k] ? alpha : 0;
+        float near = b->near[i] + along * b->near_change[i];
+        if (form == BLOCK_OVER_MESH) alpha = near >= hidden[k] ? alpha : 0;
         alpha *= cell->through[k];
-        laid->alpha[k] = alpha, laid->along[k] = along;
-        seen |= alpha > (skipped[k] < MOST_SKIPPED * (1 - cell->through[k]) ? least : 0);
+        float shown = alpha;
+        if (rims) {
+            bool before = near >= rims->near[at][k];
+            shown = before ? alpha : alpha - rims->share[at][k] * alpha;
+            rims->front[at][k] -= before ? alpha : 0;
+        }
+        laid->alpha[k] = shown, laid->along[k] = along;
+        seen |= shown > (skipped[k] < MOST_SKIPPED * (1 - cell->through[k]) ? least : 0);
         cell->through[k] -= alpha;
         through |= cell->through[k] > open;
     }
@@ -399,10 +407,16 @@ SIMD_INLINE void lay(const Block *block, BlockForm form, const Ribbons *ribbons,
         float x = (float)(c % BLOCK_CELLS_ACROSS * CELL_WIDTH),
               y = (float)(c / BLOCK_CELLS_ACROSS * CELL_HEIGHT);
         Laid *own = &w->laid[laid];
-        int found = form == BLOCK_NEAREST
-                        ? keep_nearest(batch, i, x, y, &block->cells[c], block->hidden[c], own)
-                        : lay_under(batch, i, x, y, form, least, &block->cells[c], block->hidden[c],
-                                    scratch->skipped[c], own);
+        Cell *cell = &block->cells[c];
+        float *hidden = block->hidden[c], *skipped = scratch->skipped[c];
+        int found;
+        if (form == BLOCK_NEAREST)
+            found = keep_nearest(batch, i, x, y, cell, hidden, own);
+        else if (form == BLOCK_OVER_MESH && block->rims->any[c])
+            found =
+                lay_under(batch, i, x, y, form, least, cell, hidden, block->rims, c, skipped, own);
+        else
+            found = lay_under(batch, i, x, y, form, least, cell, hidden, NULL, c, skipped, own);
         w->touches[laid] = (Touch){(uint16_t)(first + i), (uint16_t)c};
         w->seen[first + i] |= found & 1;
         scratch->open[c] &= found >> 1;
@@ -446,16 +460,24 @@ SIMD_INLINE bool look_through(BlockForm form, CompositeScratch *scratch)
 
 // Scales colours up to make good for what was left out: ribbons behind almost opaque pixels, and
 // ribbons that were too faint to be shaded.
-SIMD_INLINE void fill_up(const Block *block, float least, CompositeScratch *scratch)
+SIMD_INLINE void fill_up(const Block *block, BlockForm form, float least, CompositeScratch *scratch)
 {
     float open = through_limit(least);
     for (int c = 0; c < BLOCK_CELLS; ++c) {
         Cell *cell = &block->cells[c];
+        BlockRims *rims = form == BLOCK_OVER_MESH && block->rims->any[c] ? block->rims : NULL;
         for (int k = 0; k < CELL_PIXELS; ++k) {
             float through = cell->through[k], laid = 1 - through - scratch->skipped[c][k];
-            float all = through <= open ? 1 : 1 - through, scale = all / simd_max(laid, 1e-6f);
-            scale = laid > 1e-3f ? scale : 1;
+            float all = through <= open ? 1 : 1 - through;
             cell->through[k] = through <= open ? 0 : through;
+            if (rims) { // hide a share of the ribbons behind them
+                float front = rims->front[c][k], share = rims->share[c][k];
+                laid -= share * (front - through);
+                front = rims->front[c][k] = front <= open ? 0 : front;
+                all -= share * (front - cell->through[k]);
+            }
+            float scale = all / simd_max(laid, 1e-6f);
+            scale = laid > 1e-3f ? scale : 1;
             cell->red[k] *= scale, cell->green[k] *= scale, cell->blue[k] *= scale;
         }
     }
@@ -490,7 +512,7 @@ SIMD_INLINE void composite(const Block *block, BlockForm form, SimdLevel level,
     }
     add_colors(block, form, ribbons, level, scratch);
     if (ribbons->least_seen > 0 && form != BLOCK_NEAREST)
-        fill_up(block, ribbons->least_seen, scratch);
+        fill_up(block, form, ribbons->least_seen, scratch);
 }
 
 // --- Versions for each kind of processor. None fuses multiplications and additions

@@ -3,6 +3,7 @@
 
 #include "base/simd.h"
 #include "image/tone.h"
+#include "lanes/mesh_raster.h"
 
 #include "glsl/common/shared_math.h"
 #include "glsl/kernel/edge.h"
@@ -52,13 +53,44 @@ static void hide(const Block *block, const BlockBase *base, const PixelStyle *st
         }
 }
 
+// Notes the rims of the base's pixels; `hide` ran before.
+static void add_rims(const Block *block, const BlockBase *base, const PixelStyle *style)
+{
+    BlockRims *rims = block->rims;
+    int words = (base->width + RIM_BITS - 1) / RIM_BITS;
+    for (int y = 0; y < BLOCK_HEIGHT; ++y)
+        for (int x = 0; x < BLOCK_WIDTH; ++x) {
+            int at = base_at(base, block->x + x, block->y + y), row = block->y + y - base->y,
+                column = block->x + x - base->x;
+            if (at < 0) continue;
+            unsigned bits = base->rimmed[row * words + column / RIM_BITS] >> column % RIM_BITS;
+            if (!bits) x += RIM_BITS - 1 - column % RIM_BITS;
+            if (!(bits & 1)) continue;
+            const BaseRim *rim = &base->rim[at];
+            int c = y / CELL_HEIGHT * BLOCK_CELLS_ACROSS + x / CELL_WIDTH,
+                k = y % CELL_HEIGHT * CELL_WIDTH + x % CELL_WIDTH;
+            for (int i = 0; !rims->any[c] && i < CELL_PIXELS; ++i) {
+                rims->near[c][i] = rims->share[c][i] = 0, rims->front[c][i] = 1;
+                for (int j = 0; j < 3; ++j) rims->light[j][c][i] = 0;
+            }
+            rims->any[c] = 1;
+            rims->near[c][k] = edge_inverse_w(rim->depth, style->depth[0], style->depth[1]);
+            rims->share[c][k] = (float)rim->samples / MESH_EDGES;
+            for (int j = 0; j < 3; ++j) rims->light[j][c][k] = float_of_half(rim->light[j]);
+        }
+}
+
 void pixels_clear(const Block *block, const BlockBase *base, const PixelStyle *style)
 {
     memset(block->cells, 0, BLOCK_CELLS * sizeof *block->cells);
     memset(block->hidden, 0, BLOCK_CELLS * sizeof *block->hidden);
     for (int c = 0; c < BLOCK_CELLS; ++c)
         for (int k = 0; k < CELL_PIXELS; ++k) block->cells[c].through[k] = 1;
-    if (base) hide(block, base, style);
+    if (!base) return;
+    hide(block, base, style);
+    if (!block->rims) return;
+    memset(block->rims->any, 0, sizeof block->rims->any);
+    add_rims(block, base, style);
 }
 
 // --- Visible light: ribbons over the base.
@@ -85,6 +117,16 @@ SIMD_INLINE void lay_over(const Cell *restrict cell, float light[restrict CHANNE
         light[2][k] = cell->blue[k] + through * light[2][k];
         light[3][k] = 1 - through + through * light[3][k];
     }
+}
+
+// Lays the rims of a cell over hair that lies behind them. `light` includes them as if all ribbons
+// lay before them.
+static void lay_rims(const BlockRims *rims, const Cell *cell, int at,
+                     float light[CHANNELS][CELL_PIXELS])
+{
+    for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < CELL_PIXELS; ++k)
+            light[c][k] += (rims->front[at][k] - cell->through[k]) * rims->light[c][at][k];
 }
 
 // The value that --aov depth shows for the inverse distance `near`; 0 if nothing is there. See
@@ -117,6 +159,8 @@ static void fill_strip(const Block *block, const BlockBase *base, const PixelSty
             show_depth(block->hidden[at], style, light);
         else
             lay_over(&block->cells[at], light);
+        if (base && block->rims && block->rims->any[at])
+            lay_rims(block->rims, &block->cells[at], at, light);
         for (int c = 0; c < CHANNELS; ++c)
             for (int y = 0; y < CELL_HEIGHT; ++y)
                 memcpy(&strip->light[c][y][column * CELL_WIDTH], &light[c][y * CELL_WIDTH],

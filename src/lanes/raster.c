@@ -20,7 +20,8 @@ Result raster_create(LaneRaster *raster, int width, int height, Error *error)
                                 (height + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT, error);
     for (int i = 0; i < raster->bins.part_room && result == RESULT_OK; ++i) {
         raster->cells[i] =
-            aligned_alloc(64, BLOCK_CELLS * (sizeof(Cell) + CELL_PIXELS * sizeof(float)));
+            aligned_alloc(64, BLOCK_CELLS * (sizeof(Cell) + CELL_PIXELS * sizeof(float)) +
+                                  (sizeof(BlockRims) + 63) / 64 * 64);
         raster->scratch[i] = aligned_alloc(64, composite_scratch_size());
         if (!raster->cells[i] || !raster->scratch[i])
             result = error_set(error, RESULT_FAILED, "no memory for a block of pixels");
@@ -68,8 +69,9 @@ static void draw_block(const Work *work, size_t b, int part)
     const RasterScene *scene = work->scene;
     const Bins *bins = &raster->bins;
     Cell *cells = raster->cells[part];
-    Block block = {cells, (float(*)[CELL_PIXELS])(cells + BLOCK_CELLS),
-                   (int)(b % (size_t)bins->columns) * BLOCK_WIDTH,
+    float(*hidden)[CELL_PIXELS] = (float(*)[CELL_PIXELS])(cells + BLOCK_CELLS);
+    BlockRims *rims = scene->nearest ? NULL : (BlockRims *)(void *)(hidden + BLOCK_CELLS);
+    Block block = {cells, hidden, rims, (int)(b % (size_t)bins->columns) * BLOCK_WIDTH,
                    (int)(b / (size_t)bins->columns) * BLOCK_HEIGHT};
     size_t count = bins->begins[b + 1] - bins->begins[b];
     const BlockBase *base = pixels_have_base(scene->base, block.x, block.y) ? scene->base : NULL;

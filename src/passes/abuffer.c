@@ -27,6 +27,7 @@ static Result build_resolve(ABuffer *abuffer, int over_mesh, Error *error)
 {
     const ShaderDefine defines[] = {{"LAYERS", abuffer->layers},
                                     {"BASE", over_mesh},
+                                    {"RIMS", over_mesh && !abuffer->nearest},
                                     {"TONE", abuffer->tone},
                                     {"DEPTH", abuffer->depth},
                                     {"SAMPLES", abuffer->samples},
@@ -37,7 +38,7 @@ static Result build_resolve(ABuffer *abuffer, int over_mesh, Error *error)
 }
 
 Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int samples, int layers,
-                      int tone, bool depth, bool software, int64_t pool_bytes, Error *error)
+                      int tone, Aov aov, bool software, int64_t pool_bytes, Error *error)
 {
     *abuffer = (ABuffer){.limits = limits,
                          .shards = SHARD_COUNT,
@@ -45,7 +46,8 @@ Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int 
                          .width = width * samples,
                          .samples = samples,
                          .tone = tone,
-                         .depth = depth,
+                         .depth = aov == AOV_DEPTH,
+                         .nearest = aov > AOV_COVERAGE,
                          .most_turns = software ? ABUFFER_MOST_TURNS : INT32_MAX};
     int64_t bytes = pool_bytes ? smaller(pool_bytes, limits->storage_block) : limits->storage_block;
     int64_t most = smaller(smaller(bytes / NODE_BYTES, limits->texture_texels), INT32_MAX);
@@ -174,6 +176,10 @@ void abuffer_resolve(const ABuffer *abuffer, const RenderTarget *target, bool ov
     glBindTexture(GL_TEXTURE_2D, target->base);
     glActiveTexture(GL_TEXTURE0 + BIND_SURFACE);
     glBindTexture(GL_TEXTURE_2D, target->depth);
+    glActiveTexture(GL_TEXTURE0 + BIND_RIM);
+    glBindTexture(GL_TEXTURE_2D, target->rim);
+    glActiveTexture(GL_TEXTURE0 + BIND_RIM_DEPTH);
+    glBindTexture(GL_TEXTURE_2D, target->rim_depth);
     glBindFramebuffer(GL_FRAMEBUFFER, target->image_frame);
     glUseProgram(abuffer->resolve[over_mesh]);
     glBindVertexArray(abuffer->vertex_array);

@@ -25,6 +25,7 @@ typedef struct ABuffer {
     int samples;        // per pixel side; pixels are means of samples
     int tone;           // display.glsl's macro
     bool depth;         // pixels show the depth of their nearest fragment
+    bool nearest;       // fragments hide what is behind them
     int most_turns;     // number of a pixel's fragments that can be visited
 } ABuffer;
 
@@ -39,12 +40,12 @@ typedef struct ABufferUse {
 enum { ABUFFER_MOST_TURNS = 65000 };
 
 // `width`: of the image, px. A pixel is the mean of `samples` x `samples` samples. `layers`:
-// fragments of a sample that are blended in order, >= 0, with `depth` >= 1. `tone`: a Tone, or
-// TONE_LIGHT for premultiplied linear light. `depth`: pixels show the distance of their nearest
-// fragment instead of light. `software`: the driver draws on the CPU. `pool_bytes`: the pool's
+// fragments of a sample that are blended in order, >= 0, with AOV_DEPTH >= 1. `tone`: a Tone, or
+// TONE_LIGHT for premultiplied linear light. `aov`: what pixels show; for AOV_DEPTH, the distance
+// of their nearest fragment. `software`: the driver draws on the CPU. `pool_bytes`: the pool's
 // largest size; 0: the driver's limit.
 Result abuffer_create(ABuffer *abuffer, const GpuLimits *limits, int width, int samples, int layers,
-                      int tone, bool depth, bool software, int64_t pool_bytes, Error *error);
+                      int tone, Aov aov, bool software, int64_t pool_bytes, Error *error);
 void abuffer_destroy(ABuffer *abuffer);
 
 // Creates what resolving over a mesh needs, if missing.

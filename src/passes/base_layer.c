@@ -166,11 +166,13 @@ static void finish(const BaseLayer *base, const BaseScene *scene, FloorKind floo
                    const RenderTarget *target)
 {
     bool mesh = base->mesh.triangle_count > 0;
-    const float farthest = 1;
+    const float farthest = 1, none[4] = {0};
     glDisable(GL_SCISSOR_TEST);
     glDepthMask(GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, target->base_frame);
     glClearBufferfv(GL_COLOR, 0, scene->draw->background);
+    glClearBufferfv(GL_COLOR, 1, none);
+    glClearBufferfv(GL_COLOR, 2, none);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
     if (mesh || floor != FLOOR_NONE || base->backdrop) {
         if (base->backdrop) gpu_buffer_bind_texture(&base->backdrop_light, BIND_BACKDROP);

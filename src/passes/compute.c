@@ -20,6 +20,7 @@ static Result build(Compute *compute, int over_base, Error *error)
                               {"STAGED", sizes->stages},
                               {"BASE", over_base},
                               {"NEAREST", compute->nearest},
+                              {"RIMS", over_base && !compute->nearest},
                               {"DEPTH", compute->shows_depth},
                               {"SAMPLES", compute->samples},
                               {"KIND", (int)compute->kind},
@@ -96,6 +97,8 @@ static void composite(const Compute *compute, const RenderTarget *target, const 
     if (over_base) {
         bind_texture(BIND_BASE, target->base);
         bind_texture(BIND_MESH_DEPTH, target->depth);
+        bind_texture(BIND_RIM, target->rim);
+        bind_texture(BIND_RIM_DEPTH, target->rim_depth);
     }
     glBindImageTexture(IMAGE_PICTURE, target->image, 0, GL_FALSE, 0, GL_WRITE_ONLY,
                        formats[target->kind]);

@@ -140,8 +140,8 @@ Result quads_create(Quads *quads, const Gpu *gpu, const RendererOptions *options
                      .skips = true};
     TRY(create_ribbons(&quads->hair, &gpu->limits, nearest, error));
     TRY(abuffer_create(&quads->abuffer, &gpu->limits, options->width, options->samples, layers,
-                       drawing_display(options), options->aov == AOV_DEPTH, gpu->software,
-                       options->pool_bytes, error));
+                       drawing_display(options), options->aov, gpu->software, options->pool_bytes,
+                       error));
     quads->band_rows = abuffer_most_rows(&quads->abuffer, options->height);
     return RESULT_OK;
 }

@@ -87,6 +87,13 @@ Result render_target_add_base(RenderTarget *target, Error *error)
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth, 0);
     target->base = create_texture(GL_RGBA16F, width, height);
     target->base_frame = create_color_frame(target->base, target->depth);
+    target->rim = create_texture(GL_RGBA16F, width, height);
+    target->rim_depth = create_texture(GL_R32F, width, height);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, target->rim, 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT2, GL_TEXTURE_2D, target->rim_depth,
+                           0);
+    glDrawBuffers(
+        3, (const GLenum[]){GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2});
     target->middle_depth = create_texture(GL_DEPTH_COMPONENT32F, width, height);
     target->lit = create_texture(GL_RGBA16F, width, height);
     target->lit_frame = create_color_frame(target->lit, target->middle_depth);
@@ -106,12 +113,12 @@ void render_target_destroy(RenderTarget *target)
 {
     const GLuint frames[] = {target->image_frame, target->hair_frame,    target->base_frame,
                              target->lit_frame,   target->surface_frame, target->edge_frame};
-    const GLuint textures[] = {target->image,        target->depth,   target->base,
-                               target->lit,          target->surface, target->edge_depth,
-                               target->middle_depth, target->tint};
+    const GLuint textures[] = {
+        target->image,      target->depth,        target->base, target->lit, target->surface,
+        target->edge_depth, target->middle_depth, target->tint, target->rim, target->rim_depth};
     if (target->image) { // without a context no GL function may be called
         glDeleteFramebuffers(6, frames);
-        glDeleteTextures(8, textures);
+        glDeleteTextures(10, textures);
     }
     for (int i = 0; i < 2; ++i) late_read_destroy(&target->sent[i]);
     *target = (RenderTarget){0};

@@ -15,6 +15,7 @@ typedef struct RenderTarget {
     GLuint hair_frame;             // no colour; `depth` if there is a mesh
     GLuint depth;                  // hides hair: at edges the farthest of all samples
     GLuint base, base_frame;       // RGBA16F: mesh over background, linear, premultiplied; `depth`
+    GLuint rim, rim_depth;         // RGBA16F and R32F, see glsl/draw/base.frag; in base_frame
     GLuint middle_depth;           // depth of the mesh at pixels' middles
     GLuint surface, surface_frame; // RGBA32F, glsl/draw/surface.frag; with `middle_depth`
     GLuint tint;                   // RGBA16F, of the same

@@ -23,11 +23,13 @@ static ScreenPoint points[2 * LONG + 1];
 static uint64_t order[LONG];
 static Cell cells[BLOCK_CELLS];
 static float hidden[BLOCK_CELLS][CELL_PIXELS];
-static const Block BLOCK = {cells, hidden, BLOCK_X, BLOCK_Y};
+static BlockRims rims;
+static const Block BLOCK = {cells, hidden, &rims, BLOCK_X, BLOCK_Y};
 static CompositeScratch *scratch;
 
 typedef struct Pixel {
     double color[3], through, hidden;
+    double front;  // transmittance of the ribbons before the rim
     double little; // upper bound of the light of ribbons that are not shaded
 } Pixel;
 
@@ -86,6 +88,23 @@ static void make_ribbons(uint64_t seed, int count, double width, double opacity)
     }
 }
 
+static int nearer_ribbon(const void *a, const void *b)
+{
+    const Ribbon *p = a, *q = b;
+    float x = p->near[0] + p->near[1], y = q->near[0] + q->near[1];
+    return (x < y) - (x > y);
+}
+
+// Puts the ribbons in the order of depth, and makes each one's depth even.
+static void sort_ribbons(int count)
+{
+    qsort(ribbons, (size_t)count, sizeof *ribbons, nearer_ribbon);
+    for (int i = 0; i < count; ++i) {
+        ribbons[i].near[0] = ribbons[i].near[1] = 0.5f * (ribbons[i].near[0] + ribbons[i].near[1]);
+        pack(&ribbons[i], i);
+    }
+}
+
 static void composite_on(SimdLevel simd, const Block *block, BlockForm form, int count,
                          float least_seen)
 {
@@ -102,11 +121,26 @@ static void clear_block(float share_hidden)
 {
     Random random = random_create(5, 5);
     memset(cells, 0, sizeof cells);
+    memset(&rims, 0, sizeof rims);
     for (int c = 0; c < BLOCK_CELLS; ++c)
         for (int k = 0; k < CELL_PIXELS; ++k) {
             cells[c].through[k] = 1;
             hidden[c][k] = random_real(&random) < (double)share_hidden ? range(&random, 0.5, 2) : 0;
         }
+}
+
+// Gives every second cell rims of 0 to 4 of a pixel's four samples, before the mesh.
+static void add_rims(void)
+{
+    Random random = random_create(6, 6);
+    for (int c = 0; c < BLOCK_CELLS; c += 2) {
+        rims.any[c] = 1;
+        for (int k = 0; k < CELL_PIXELS; ++k) {
+            rims.near[c][k] = hidden[c][k] + range(&random, 0, 1);
+            rims.share[c][k] = (float)random_below(&random, 5) / 4;
+            rims.front[c][k] = 1;
+        }
+    }
 }
 
 // --- The reference in double precision.
@@ -140,10 +174,11 @@ static double cover(const Ribbon *r, double x, double y, double *along)
            clamp(fmin(on + 0.5, length - on + 0.5));
 }
 
+// `rim`: 1/w and share of the pixel.
 static Pixel expected_pixel(int count, BlockForm form, double x, double y, double hides,
-                            double least)
+                            const double rim[2], double least)
 {
-    Pixel p = {{0}, 1, hides, 0};
+    Pixel p = {{0}, 1, hides, 1, 0};
     for (int i = 0; i < count; ++i) {
         const Ribbon *r = &ribbons[i];
         double along, alpha = cover(r, x, y, &along),
@@ -157,11 +192,13 @@ static Pixel expected_pixel(int count, BlockForm form, double x, double y, doubl
             memset(p.color, 0, sizeof p.color);
         }
         if (form == BLOCK_OVER_MESH && near < p.hidden) continue;
+        double seen = near < rim[0] ? 1 - rim[1] : 1;
         for (int k = 0; k < 3; ++k)
-            p.color[k] += p.through * alpha *
+            p.color[k] += seen * p.through * alpha *
                           ((1 - along) * (double)r->color[0][k] + along * (double)r->color[1][k]);
         p.little += fmin(p.through * alpha, least);
         p.through *= 1 - alpha;
+        if (near >= rim[0]) p.front *= 1 - alpha;
     }
     return p;
 }
@@ -187,8 +224,10 @@ static double compare(int count, BlockForm form, float least_seen, int spared)
         for (int k = 0; k < CELL_PIXELS; ++k) {
             double x = BLOCK_X + c % BLOCK_CELLS_ACROSS * CELL_WIDTH + k % CELL_WIDTH + 0.5,
                    y = BLOCK_Y + c / BLOCK_CELLS_ACROSS * CELL_HEIGHT + k / CELL_WIDTH + 0.5;
-            Pixel p = expected_pixel(count, form, x, y, (double)before[c][k], least);
+            const double rim[2] = {(double)rims.near[c][k], (double)rims.share[c][k]};
+            Pixel p = expected_pixel(count, form, x, y, (double)before[c][k], rim, least);
             double off = difference(&cells[c], k, &p);
+            if (rims.any[c]) off = fmax(off, fabs((double)rims.front[c][k] - p.front));
             if (off > 1e-3 && spared-- > 0) continue;
             largest = fmax(largest, off - 1.01 * (p.little + 2 * least));
         }
@@ -329,6 +368,19 @@ static void the_nearest_hides_all_behind_it(void **state)
     assert_true(compare(300, BLOCK_NEAREST, 0, 4) < 4e-5);
 }
 
+// A rim that covers a share of a pixel hides this share of the ribbons behind it.
+static void a_rim_hides_its_share_of_what_lies_behind_it(void **state)
+{
+    (void)state;
+    make_ribbons(10, 300, 1, 0.5);
+    sort_ribbons(300);
+    for (int least = 0; least < 2; ++least) {
+        clear_block(0.5f);
+        add_rims();
+        assert_true(compare(300, BLOCK_OVER_MESH, least ? 1 / 256.0f : 0, 4) < 4e-5);
+    }
+}
+
 static void every_processor_gives_the_same_bits(void **state)
 {
     (void)state;
@@ -364,7 +416,7 @@ static void wild_points_harm_nobody(void **state)
     } guarded;
     memset(&guarded, 0x55, sizeof guarded);
     memcpy(guarded.cells, cells, sizeof cells);
-    const Block block = {guarded.cells, hidden, BLOCK_X, BLOCK_Y};
+    const Block block = {guarded.cells, hidden, &rims, BLOCK_X, BLOCK_Y};
     composite_on(simd_level(), &block, BLOCK_OPEN, WILD * WILD, 0);
     for (size_t i = 0; i < sizeof(Cell); ++i) {
         assert_int_equal(((const uint8_t *)&guarded.before)[i], 0x55);
@@ -400,6 +452,7 @@ int main(void)
         cmocka_unit_test(what_lies_behind_the_mesh_is_hidden),
         cmocka_unit_test(what_is_all_behind_the_mesh_changes_nothing),
         cmocka_unit_test(the_nearest_hides_all_behind_it),
+        cmocka_unit_test(a_rim_hides_its_share_of_what_lies_behind_it),
         cmocka_unit_test(every_processor_gives_the_same_bits),
         cmocka_unit_test(wild_points_harm_nobody),
     };

@@ -210,10 +210,17 @@ static void a_strand_throws_its_shadow_on_the_mesh(void **state)
 }
 
 // A mesh that covers 0.4 of a pixel, with two of its four samples but not its middle, is visible by
-// half.
+// half. So is hair behind it; hair before it is whole.
 static void an_edge_of_the_mesh_shows_by_its_samples(void **state)
 {
     (void)state;
+    static const struct {
+        float opacity, z; // of the strand
+        double edge;      // light
+    } hair[] = {{1, -10, 0.5 * 0.15 + 0.5},
+                {0.4f, -10, 0.5 * 0.15 + 0.5 * 0.4},
+                {1, 10, 1},
+                {0.4f, 10, 0.4 + 0.6 * 0.5 * 0.15}};
     Error error = {{0}};
     Mesh mesh = make_square(50.4f);
     use(&BLACK);
@@ -226,6 +233,22 @@ static void an_edge_of_the_mesh_shows_by_its_samples(void **state)
         edge = studio_pixel(&studio, SIDE / 2 + 50, SIDE / 2)[0];
     assert_true(fabs(whole - srgb(0.15)) <= 1 && fabs(edge - srgb(0.15 / 2)) <= 1);
     assert_int_equal(studio_pixel(&studio, SIDE / 2 + 51, SIDE / 2)[0], 0);
+    for (size_t i = 0; i < sizeof hair / sizeof *hair; ++i) {
+        add_line((float[3]){0, 0, hair[i].z}, (float[3]){90, 0, hair[i].z}, 9, hair[i].opacity);
+        studio_draw(&studio);
+        edge = studio_pixel(&studio, SIDE / 2 + 50, SIDE / 2)[0];
+        if (fabs(edge - srgb(hair[i].edge)) > studio_rounding(&studio))
+            fail_msg("%zu: %d instead of %g", i, edge, srgb(hair[i].edge));
+        studio_clear(&studio);
+    }
+    // Through one strand before it and past one behind it
+    add_line((float[3]){0, 0, 10}, (float[3]){90, 0, 10}, 9, 0.4f);
+    add_line((float[3]){0, 0, -10}, (float[3]){90, 0, -10}, 9, 0.4f);
+    studio_draw(&studio);
+    edge = studio_pixel(&studio, SIDE / 2 + 50, SIDE / 2)[0];
+    double both = 0.4 + 0.6 * (0.5 * 0.15 + 0.5 * 0.4);
+    if (fabs(edge - srgb(both)) > studio_rounding(&studio))
+        fail_msg("both: %d instead of %g", edge, srgb(both));
 }
 
 // The brightness of a square's middle due to a light at `a` degrees, without the ambient part.
@@ -394,5 +417,6 @@ int main(void)
         CLAIM(surfaces_that_hide_the_sky_reflect_its_light),
         CLAIM(a_mesh_is_drawn_again_where_it_looks_different),
     };
-    return stage_run(tests);
+    const struct CMUnitTest edges[] = {CLAIM(an_edge_of_the_mesh_shows_by_its_samples)};
+    return stage_run(tests) + stage_run_one(edges, RASTER_COMPUTE);
 }
