@@ -17,6 +17,7 @@
 #include "mesh/mesh_read.h"
 #include "mesh/mesh_sequence.h"
 #include "strands/strands.h"
+#include "strands/strands_read.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -324,6 +325,7 @@ static Result read_mesh(Job *job, Error *error)
             : mesh_read(&job->mesh, path,
                         (float)(options.unit > 0 ? options.unit : options.otherwise_unit),
                         (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1, error);
+    if (!mesh_sequence_matches(path)) result = strands_read_as_mesh(result, path, error);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&rest);
     THEN(result, surface_create(&job->surface, &job->mesh, path, error));

@@ -13,6 +13,7 @@
 #include "mesh/mesh_read.h"
 #include "mesh/obj.h"
 #include "mesh/scalp.h"
+#include "strands/strands_read.h"
 
 #include <math.h>
 #include <string.h>
@@ -312,8 +313,9 @@ static Result grow_fur(int argc, char **argv, Error *error)
     TRY(paths_claim(uses, sizeof uses / sizeof *uses, error));
     activity_start(stderr, options.output.quiet);
     activity_set("growing hair");
-    TRY(mesh_read(&mesh, options.mesh, (float)options.unit, options.up_z, error));
-    Result result = write_fur(&options, &mesh, error);
+    Result result = mesh_read(&mesh, options.mesh, (float)options.unit, options.up_z, error);
+    TRY(strands_read_as_mesh(result, options.mesh, error));
+    result = write_fur(&options, &mesh, error);
     mesh_destroy(&mesh);
     return result;
 }

@@ -7,6 +7,7 @@
 #include "mesh/mesh_sequence.h"
 #include "strands/paint.h"
 #include "strands/strands_edit.h"
+#include "strands/strands_read.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -188,7 +189,8 @@ static Result load_body(const BodyLoad *load, Error *error)
     if (mesh_sequence_matches(params->mesh)) return load_sequence(load, &options, error);
     float unit = (float)(options.unit > 0 ? options.unit : options.otherwise_unit);
     bool up_z = (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1;
-    return mesh_read(load->mesh, params->mesh, unit, up_z, error);
+    Result result = mesh_read(load->mesh, params->mesh, unit, up_z, error);
+    return strands_read_as_mesh(result, params->mesh, error);
 }
 
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error)

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 // --- Detection.
 
@@ -32,6 +33,22 @@ static bool is_xgen(const Bytes *bytes)
     return text[0] == '#' && strncasecmp(text + 1 + strspn(text + 1, " "), "xgen", 4) == 0;
 }
 
+// Whether the second line of the text has at least two numbers and nothing else. The first line may
+// name the columns.
+static bool is_table(const Reader *reader)
+{
+    const char *text = (const char *)reader->data, *line = strchr(text, '\n');
+    int numbers = 0;
+    for (const char *at = line ? line + 1 : ""; *at && *at != '\n'; numbers++) {
+        char *end;
+        at += strspn(at, " \t");
+        strtod(at, &end);
+        if (end == at) return false;
+        at = end + strspn(end, " \t,;\r");
+    }
+    return numbers >= 2;
+}
+
 static Result refuse_unknown(Reader *reader, bool xgen)
 {
     char names[400];
@@ -48,6 +65,10 @@ static Result refuse_unknown(Reader *reader, bool xgen)
         return reader_fail(reader,
                            "not supported: GLTF, a scene of triangles: it keeps no strands: export "
                            "Alembic, USD or Wavefront lines");
+    if (is_table(reader))
+        return reader_fail(reader,
+                           "a table of numbers, not a hair file: save it with numpy as an array of "
+                           "shape (strands, points, 3) (docs/formats.md#numpy)");
     format_list_names(names, sizeof names);
     return reader_fail(reader, "not a hair file: expected %s", names);
 }
@@ -317,4 +338,37 @@ void strands_frames_destroy(StrandsFrames *frames)
 {
     free(frames->position);
     *frames = (StrandsFrames){0};
+}
+
+// --- Hair in place of a mesh.
+
+// Wavefront files are hair only if they have lines and no faces. USD, Alembic and numpy files may
+// hold a mesh, too.
+static void explain(const Bytes *bytes, const char *path, Error *error)
+{
+    FormatKind kind = format_detect(bytes);
+    bool lines = memmem(bytes->data, bytes->size, "\nl ", 3) != NULL;
+    bool faces = memmem(bytes->data, bytes->size, "\nf ", 3) != NULL;
+    if (kind == FORMAT_KINDS || kind == FORMAT_PLY || kind == FORMAT_PLY_TEXT) return;
+    if (kind == FORMAT_OBJ && (faces || !lines)) return;
+    bool either =
+        kind == FORMAT_USD || kind == FORMAT_ABC || kind == FORMAT_NPZ || kind == FORMAT_NPY;
+    error_set(error, RESULT_BAD_INPUT,
+              either ? "%s: %s, not OBJ or PLY: " FOREIGN_WANTS_MESH
+                     : "%s: hair (%s), not a mesh: " FOREIGN_WANTS_MESH,
+              path, FORMAT_TABLE[kind]->name);
+}
+
+Result strands_read_as_mesh(Result result, const char *path, Error *error)
+{
+    struct stat status;
+    Bytes bytes;
+    Error unread;
+    // Standard input and pipes cannot be read twice.
+    if (result != RESULT_BAD_INPUT || stat(path, &status) != 0 || !S_ISREG(status.st_mode))
+        return result;
+    if (bytes_read_file(&bytes, path, &unread) != RESULT_OK) return result;
+    if (!foreign_find(bytes.data, bytes.size)) explain(&bytes, path, error);
+    bytes_destroy(&bytes);
+    return result;
 }

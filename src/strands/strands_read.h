@@ -62,3 +62,7 @@ void strands_frames_destroy(StrandsFrames *frames);
 // path in messages.
 Result strands_read_bytes(Strands *strands, const char *name, const Bytes *bytes,
                           const StrandsReadOptions *options, StrandsReport *report, Error *error);
+
+// For a file that was to be a mesh and was refused with RESULT_BAD_INPUT: if it has the content of
+// another format of hair than PLY, `error` names that format instead. Returns `result`.
+Result strands_read_as_mesh(Result result, const char *path, Error *error);

@@ -285,6 +285,7 @@ printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty floa
 run 0 $curls --mesh "$work/mesh.ply" --mesh-unit m --stats; says "inside the mesh: "
 run 3 assets/nod.npz; says "a mesh, not hair: expected hair (pass a mesh with --mesh)"; one_line
 run 0 $curls --nth 20 -q -o "$work/hair.npz"; run 3 $curls --mesh "$work/hair.npz" --fit -o "$work/unfit.tfx"; says "no faces: expected a mesh (tractrix-render takes hair without --mesh)"; one_line
+run 3 $curls --mesh assets/bob.tfx --fit -o "$work/unfit.tfx"; says "bob.tfx: hair (TressFX 3 binary), not a mesh: expected a mesh"; one_line
 run 3 "$work/mesh.ply"; says "a mesh of 4 faces, not hair: expected hair (pass a mesh with --mesh)"; one_line
 sed 's/3 0 3 2/3 0 3 9/' "$work/mesh.ply" >"$work/bad.ply"
 run 3 $curls --mesh "$work/bad.ply" --stats; says "bad.ply:17: face 3 has corner 9: expected less than 4"; one_line

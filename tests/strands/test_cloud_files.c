@@ -579,7 +579,10 @@ static void npz_that_lies_is_refused(void **state)
     } cases[] = {
         {"positions.npy", "(2, 2, 3)", "unpacks to 1099511627776 bytes", 12, 1ull << 40},
         {"positions.npy", "(2, 2, 3)", "does not unpack to 10 bytes", 12, 10},
-        {"x.npy", "(2, 2)", "no array of floats with the shape (strands, points, 3)", 4, 0},
+        {"x.npy", "(2, 2)",
+         "no array of floats with the shape (strands, points, 3): there is x (2, 2): expected one, "
+         "or the arrays points and sizes",
+         4, 0},
         {"positions.npy", "(2, 2, 3)", "FILE: positions.npy: byte", 3, 0},
         {"points.npy", "(3, 3)", "where its strands end (3 points): expected --points-per-strand",
          9, 0},
@@ -628,7 +631,15 @@ static void files_of_other_programs_are_named_with_what_converts_them(void **sta
         {"# XGen Description File\n", "an XGen description"},
         {"PK\x03\x04................xx........scene.usdc", "a USD package (.usdz)"},
         {"PK\x03\x04................xx........readme.txt", "a zip archive: unpack it"},
-        {"v 0 0 0\nv 1 0 0\nf 1 2 1\n", "a Wavefront file without lines (l)"},
+        {"v 0 0 0\nv 1 0 0\nf 1 2 1\n", "a mesh of 2 vertices and 1 faces, not hair: "
+                                        "expected hair (pass a mesh with --mesh); tractrix-gen fur "
+                                        "grows hair on a mesh"},
+        {"v 0 0 0\nv 1 0 0\n", "a Wavefront file of 2 vertices without lines (l) and faces"},
+        {"strand,x,y,z\n0,1.5,-2,3e-2\n",
+         "a table of numbers, not a hair file: save it with numpy"},
+        {"0 1\n 2; 3\r\n", "a table of numbers, not a hair file"},
+        {"hello\n2 3 x\n", "not a hair file: expected USD"},
+        {"hello\n2\n", "not a hair file: expected USD"},
         {"hello", "not a hair file: expected USD"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)

@@ -283,7 +283,7 @@ static void broken_obj_files_are_refused_with_their_line(void **state)
 {
     static const struct {
         const char *text, *says;
-    } cases[] = {{"v 0 0 0\nv 0 1 0\nf 1 2 1\n", "without lines"},
+    } cases[] = {{"v 0 0 0\nv 0 1 0\nf 1 2 1\n", "a mesh of 2 vertices and 1 faces"},
                  {"v 0 0 0\nv 0 1 0\nl 1 3\n", "x.obj:3: "},
                  {"v 0 0 0\nl 1 0\n", "x.obj:2: "},
                  {"v 0 0 0\nl 1 -2\n", "x.obj:2: "},

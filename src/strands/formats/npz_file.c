@@ -226,6 +226,18 @@ static void read_up(Npz *npz)
 
 // --- .npz: strands.
 
+// Appends "hair (2400, 3)"; the list is cut where it does not fit.
+static void add_found(char *found, size_t size, const char *name, const NpyArray *array)
+{
+    char shape[80];
+    size_t length = strlen(found);
+    const char *suffix = strrchr(name, '.');
+    int letters = suffix ? (int)(suffix - name) : (int)strlen(name);
+    npy_array_describe(array, shape, sizeof shape);
+    snprintf(found + length, size - length, "%s%.*s %s", length ? ", " : "",
+             letters < 40 ? letters : 40, name, shape);
+}
+
 // The array that --array names, or else `positions` or `points`, or else the first array with a
 // suitable shape. Returns its number, or -1 after an error.
 static int find_positions(Npz *npz, Held *held)
@@ -240,6 +252,7 @@ static int find_positions(Npz *npz, Held *held)
     }
     for (int i = 0; i < 2 && !wanted && file < 0; i++) file = find_name(npz, names[i]);
     if (file >= 0) return hold(npz, (uint32_t)file, held) == RESULT_OK ? file : -1;
+    char found[200] = "";
     for (uint32_t i = 0; i < npz->zip.count && reader_ok(npz->reader); i++) {
         if (hold(npz, i, held) != RESULT_OK) return -1;
         if (held->array.axes == 3 && layout_of(&held->array).vertices) {
@@ -249,11 +262,15 @@ static int find_positions(Npz *npz, Held *held)
                 npz->zip.file[i].name);
             return (int)i;
         }
+        add_found(found, sizeof found, npz->zip.file[i].name, &held->array);
         npz->used[i] = false;
         drop(npz, held);
     }
-    reader_fail(npz->reader,
-                "no array of floats with the shape (strands, points, 3): expected one, or --array");
+    reader_fail(
+        npz->reader,
+        "no array of floats with the shape (strands, points, 3): there is %s: expected one, "
+        "or the arrays points and sizes, or --array",
+        found);
     return -1;
 }
 

@@ -14,12 +14,12 @@
 typedef struct Obj {
     Reader *reader;
     FormatSource *source;
-    float (*position)[3];              // [vertices]
-    uint32_t *line;                    // [vertices] line in the file
-    uint64_t vertices, lines, corners; // in the file
-    uint32_t read;                     // vertices read so far
-    uint32_t strands, used;            // so far; `used` counts corners
-    int64_t last;                      // vertex where the last `l` ended; -1 if none
+    float (*position)[3];                     // [vertices]
+    uint32_t *line;                           // [vertices] line in the file
+    uint64_t vertices, lines, corners, faces; // in the file
+    uint32_t read;                            // vertices read so far
+    uint32_t strands, used;                   // so far; `used` counts corners
+    int64_t last;                             // vertex where the last `l` ended; -1 if none
 } Obj;
 
 static void count_statements(Obj *obj)
@@ -30,6 +30,7 @@ static void count_statements(Obj *obj)
     while (obj_next_statement(&counter, &statement)) {
         obj->vertices += statement == OBJ_VERTEX;
         obj->lines += statement == OBJ_LINE;
+        obj->faces += statement == OBJ_FACE;
         while (statement == OBJ_LINE && obj_goes_on(&counter) &&
                reader_read_word(&counter, word, sizeof word))
             obj->corners++;
@@ -100,9 +101,17 @@ static void read_statements(Obj *obj)
 static Result make_room(Obj *obj)
 {
     Reader *reader = obj->reader;
-    if (obj->lines == 0)
+    if (obj->lines == 0 && obj->faces > 0)
         return reader_fail(reader,
-                           "a Wavefront file without lines (l), not hair: " FOREIGN_WANTS_HAIR);
+                           "a mesh of %llu vertices and %llu faces, not hair: " FOREIGN_WANTS_HAIR
+                           "; tractrix-gen fur grows hair on a mesh",
+                           (unsigned long long)obj->vertices, (unsigned long long)obj->faces);
+    if (obj->lines == 0)
+        return reader_fail(
+            reader,
+            "a Wavefront file of %llu vertices without lines (l) and faces: expected "
+            "a line for each strand, which lists its vertices from root to tip",
+            (unsigned long long)obj->vertices);
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
         return reader_fail(reader, "too many vertices or lines: expected fewer than 2^32 - 1");
     TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));

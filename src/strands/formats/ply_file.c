@@ -172,7 +172,9 @@ static void refuse_mesh(Ply *ply)
         const PlyElement *element = &ply->file.element[i];
         if (element->count &&
             (strcmp(element->name, "face") == 0 || strcmp(element->name, "tristrips") == 0))
-            reader_fail(ply->reader, "a mesh of %u faces, not hair: " FOREIGN_WANTS_HAIR,
+            reader_fail(ply->reader,
+                        "a mesh of %u faces, not hair: " FOREIGN_WANTS_HAIR
+                        "; tractrix-gen fur grows hair on a mesh",
                         element->count);
     }
 }
