@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Users of equal programs share one, and only a few unused programs are kept.
+// Users of equal programs share one, and only a few unused programs are kept. Artificial errors of
+// functions, by which tests imitate other drivers.
+#include "base/random.h"
 #include "gpu/gpu.h"
 #include "gpu/shader.h"
 #include "support/needed.h"
 #include "support/test_glsl.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -110,12 +114,69 @@ static void what_fails_is_not_kept(void **state)
     assert_int_equal(count_programs(), before);
 }
 
+// --- Artificial errors of functions.
+
+enum { GROUPS = 64, FUNCTIONS = 10, RESULTS = 4 * FUNCTIONS * GROUPS };
+
+// Fills `y` with the results of all functions, [group][function][4].
+static void run_functions(int ulps, const float x[4 * GROUPS], float y[RESULTS])
+{
+    GLuint program, buffers[2];
+    shader_assume_ulps(ulps);
+    NEEDED(shader_build_compute(&program, "probe_perturb.comp", NULL, error));
+    shader_assume_ulps(gpu.ulps);
+    glGenBuffers(2, buffers);
+    for (GLuint i = 0; i < 2; ++i) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
+        glBufferData(GL_SHADER_STORAGE_BUFFER, (i ? RESULTS : 4 * GROUPS) * sizeof *x, i ? NULL : x,
+                     GL_STREAM_READ);
+    }
+    glUseProgram(program);
+    glDispatchCompute(GROUPS, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, RESULTS * sizeof *y, y);
+    glUseProgram(0);
+    glDeleteBuffers(2, buffers);
+    shader_release(program);
+}
+
+// Each result is moved by so many units in the last place, about half of them upwards, except for
+// results that are exact on every driver.
+static void functions_have_the_artificial_error_that_was_asked_for(void **state)
+{
+    enum { ULPS = 5 };
+    static float x[4 * GROUPS], exact[RESULTS], moved[RESULTS];
+    int up[FUNCTIONS] = {0}, down[FUNCTIONS] = {0};
+    Random random = random_create(1, 0);
+    (void)state;
+    for (int i = 0; i < 4 * GROUPS; ++i) x[i] = (float)(0.01 + 0.98 * random_real(&random));
+    const float special[] = {0, 1, -1, INFINITY, -INFINITY, NAN, 88, -80};
+    memcpy(x, special, sizeof special);
+    run_functions(0, x, exact);
+    run_functions(ULPS, x, moved);
+    for (int i = 0; i < RESULTS; ++i) {
+        int32_t a, b;
+        float size = fabsf(exact[i]);
+        memcpy(&a, &exact[i], sizeof a);
+        memcpy(&b, &moved[i], sizeof b);
+        if (isnan(size))
+            assert_true(isnan(moved[i]));
+        else if (size <= 1e-30f || size >= 1e30f || exact[i] == 1)
+            assert_int_equal(a, b);
+        else
+            assert_int_equal(abs(a - b), ULPS);
+        if (a != b && !isnan(size)) ++*(b > a ? &up[i / 4 % FUNCTIONS] : &down[i / 4 % FUNCTIONS]);
+    }
+    for (int k = 0; k < FUNCTIONS; ++k) assert_true(up[k] > GROUPS && down[k] > GROUPS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_files_and_macros_are_one_program),
         cmocka_unit_test(the_number_of_kept_unused_programs_is_limited),
         cmocka_unit_test(what_fails_is_not_kept),
+        cmocka_unit_test(functions_have_the_artificial_error_that_was_asked_for),
     };
     return cmocka_run_group_tests_name("shader", tests, open_gpu, close_gpu);
 }
