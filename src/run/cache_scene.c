@@ -304,6 +304,38 @@ Result cache_scene_describe_hair(Bytes *bytes, const Simulation *simulation, con
     return describe_hair(bytes, NULL, simulation, strands, error);
 }
 
+static Result refuse_hair(const Scene *scene, uint32_t section, const char *path, Error *error)
+{
+    return error_set(error, RESULT_BAD_INPUT,
+                     "%s: was simulated with hair that differs from %s: expected the same hair",
+                     path, scene->section_count ? scene->sections[section].file : "none");
+}
+
+// 0 behind the end.
+static uint32_t take_u32(const Bytes *bytes, size_t *at)
+{
+    uint32_t value = 0;
+    if (*at <= bytes->size && bytes->size - *at >= sizeof value)
+        memcpy(&value, bytes->data + *at, sizeof value);
+    *at += sizeof value;
+    return le32toh(value);
+}
+
+Result cache_scene_compare_strands(const Bytes *bytes, const Scene *scene, const Strands *strands,
+                                   const char *path, Error *error)
+{
+    size_t at = 0;
+    if (take_u32(bytes, &at) != scene->section_count) return refuse_hair(scene, 0, path, error);
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        uint32_t count = take_u32(bytes, &at), crc = take_u32(bytes, &at);
+        uint32_t runs = take_u32(bytes, &at);
+        if (count != strands[i].strand_count || crc != checksum(&strands[i]))
+            return refuse_hair(scene, i, path, error);
+        at += ((size_t)2 * runs + count) * sizeof count; // see put_runs and put_section
+    }
+    return RESULT_OK;
+}
+
 Result cache_scene_compare_hair(const Bytes *bytes, const Simulation *simulation,
                                 const Strands *strands, const char *path, Error *error)
 {
@@ -317,10 +349,7 @@ Result cache_scene_compare_hair(const Bytes *bytes, const Simulation *simulation
         while (i + 1 < count && ends[i] <= bytes->size &&
                memcmp(bytes->data, now.data, ends[i]) == 0)
             ++i;
-        result =
-            error_set(error, RESULT_BAD_INPUT,
-                      "%s: was simulated with hair that differs from %s: expected the same hair",
-                      path, count ? simulation->scene->sections[i].file : "none");
+        result = refuse_hair(simulation->scene, i, path, error);
     }
     bytes_destroy(&now);
     free(ends);

@@ -39,3 +39,8 @@ Result cache_scene_describe_hair(Bytes *bytes, const Simulation *simulation, con
 // section's file that differs.
 Result cache_scene_compare_hair(const Bytes *bytes, const Simulation *simulation,
                                 const Strands *strands, const char *path, Error *error);
+
+// The same comparison before there is a simulation. It leaves out what needs one: the order of the
+// strands.
+Result cache_scene_compare_strands(const Bytes *bytes, const Scene *scene, const Strands *strands,
+                                   const char *path, Error *error);

@@ -146,14 +146,16 @@ static Result check_cache(const RunParams *run, Error *error)
     return result;
 }
 
-// Refuses a cache of a scene with other values, before a device is opened. Whether it belongs to
-// the same hair and meshes is checked later, because this needs the simulation.
-static Result check_cache_scene(const Scene *scene, Error *error)
+// Refuses a cache of a scene with other values or other hair, before a device is opened. Whether it
+// belongs to the same meshes is checked later, because this needs the simulation.
+static Result check_cache_scene(const Scene *scene, const Strands *strands, Error *error)
 {
     CacheFile cache;
     if (!*scene->run.from_cache) return RESULT_OK;
     Result result = cache_file_open(&cache, scene->run.from_cache, error);
     THEN(result, cache_scene_compare_values(&cache.scene, scene, scene->run.from_cache, error));
+    THEN(result,
+         cache_scene_compare_strands(&cache.hair, scene, strands, scene->run.from_cache, error));
     cache_file_close(&cache);
     return result;
 }
@@ -336,7 +338,8 @@ static Result prepare(Run *run, Error *error)
                     error));
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
                     error));
-    TRY(check_cache_scene(&run->scene, error)); // after a guessed scalp has added its colliders
+    // After a guessed scalp has added its colliders.
+    TRY(check_cache_scene(&run->scene, run->assets.strands, error));
     activity_set(NULL);
     run->loaded_ms = clock_ms();
     if (!params->quiet) warn_all(&run->scene);

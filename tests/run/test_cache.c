@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A cache returns every bit of its frames, also after truncation, and reports what it can't return.
 #include "run/cache.h"
+#include "run/cache_scene.h"
 #include "run/frame_source.h"
 #include "support/hair_fixture.h"
 #include "support/simulation_fixture.h"
@@ -200,11 +201,28 @@ static void another_scene_is_refused_by_the_value_that_differs(void **state)
     fixture.scene.sections[0].params.opacity = 0.9f; // looks do not matter
     fixture.scene.run.frames = 3;
     assert_int_equal(play(&fixture, &recorded, recorded.path), FRAMES);
+    float before = fixture.strands.position[7][1];
     fixture.strands.position[7][1] += 1e-6f;
     assert_int_equal(
         cache_reader_open(&reader, recorded.path, &fixture.simulation, &fixture.strands, &error),
         RESULT_BAD_INPUT);
     assert_non_null(strstr(error.text, "hair that differs from curls"));
+    // The same before there is a simulation, also if the record of the hair is cut.
+    CacheFile file;
+    assert_int_equal(cache_file_open(&file, recorded.path, &error), RESULT_OK);
+    assert_int_equal(cache_scene_compare_strands(&file.hair, &fixture.scene, &fixture.strands,
+                                                 recorded.path, &error),
+                     RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "hair that differs from curls"));
+    fixture.strands.position[7][1] = before;
+    assert_int_equal(cache_scene_compare_strands(&file.hair, &fixture.scene, &fixture.strands,
+                                                 recorded.path, &error),
+                     RESULT_OK);
+    file.hair.size = 6;
+    assert_int_equal(cache_scene_compare_strands(&file.hair, &fixture.scene, &fixture.strands,
+                                                 recorded.path, &error),
+                     RESULT_BAD_INPUT);
+    cache_file_close(&file);
     simulation_fixture_destroy(&fixture);
 }
 

@@ -27,6 +27,10 @@ claim "a cache of another scene, or one that is damaged or cut off, is refused b
 {
 run 3 $scene -q --from-cache "$work/a.cache" --style 0.3 -o "$work/x/"; one_line; says "sections[0].style"
 run 3 $hair -q --from-cache "$work/a.cache" --frames 2 -o "$work/x/"; one_line; says "a.cache: was simulated with"
+run 0 assets/fur.tfx --algo none --scalp none --frames 1 -q --cache "$work/fur.cache"
+"$bin/tractrix-convert" assets/fur.tfx --scale 1.01 -q -o "$work/larger.tfx"
+# One line: neither a device nor an exposure is reported before.
+run 3 "$work/larger.tfx" --algo none --scalp none --frames 1 --from-cache "$work/fur.cache" -o "$work/x/"; one_line; says "fur.cache: was simulated with hair that differs from $work/larger.tfx"
 run 3 $scene -q --from-cache "$work/a.cache" --frames 13 -o "$work/x/"; one_line; says "no frame 12: complete frames: 0 to 11"
 run 3 $scene -q --from-cache "$work/none.cache" -o "$work/x/"; one_line; says "none.cache"
 run 3 $scene -q --from-cache "$hair" -o "$work/x/"; one_line; says "TRXCACHE"
