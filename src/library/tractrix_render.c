@@ -38,7 +38,7 @@ static Result aim(TractrixRenderer *renderer, Error *error)
     outline_frame(&renderer->framing, &renderer->scene, assets->strands, assets->meshes);
     if (!survey_is_wanted(&renderer->scene)) return RESULT_OK;
     return survey_fit_camera(&renderer->framing, &unused, &renderer->scene, assets,
-                             &renderer->simulation->device->gpu, error);
+                             &renderer->simulation->device->gpu, NULL, error);
 }
 
 // --- Lifetime.

@@ -250,7 +250,8 @@ static Result aim(Run *run, Error *error)
         report_camera(run);
         return RESULT_OK;
     }
-    TRY(survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu, error));
+    TRY(survey_fit_camera(&run->framing, &report, &run->scene, &run->assets, &run->gpu,
+                          params->quiet ? NULL : stderr, error));
     activity_set(NULL);
     if (params->verbose)
         fprintf(stderr, "camera: fits %d frames, simulated in %.2g s\n", report.frames,

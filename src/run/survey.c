@@ -2,6 +2,7 @@
 #include "run/survey.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/progress.h"
 #include "run/drawn_bodies.h"
 #include "run/frame_source.h"
 #include "run/stats.h"
@@ -155,15 +156,19 @@ static Result look_at_frame(Survey *survey, SurveyReport *report, int frame, Err
     return result;
 }
 
-static Result look(Survey *survey, SurveyReport *report, Error *error)
+static Result look(Survey *survey, SurveyReport *report, FILE *terminal, Error *error)
 {
     Result result = RESULT_OK;
+    Progress progress = {0};
+    if (terminal) progress_start(&progress, terminal, survey->scene->run.frames, false);
     for (int frame = 0; frame < survey->scene->run.frames && result == RESULT_OK; ++frame) {
-        if (interrupt_requested())
-            return error_set(error, RESULT_INTERRUPTED, "interrupted before the first frame");
-        result = look_at_frame(survey, report, frame, error);
+        result = interrupt_requested()
+                     ? error_set(error, RESULT_INTERRUPTED, "interrupted before the first frame")
+                     : look_at_frame(survey, report, frame, error);
         ++report->frames;
+        progress_update(&progress, frame + 1);
     }
+    progress_clear(&progress);
     if (result == RESULT_OK)
         report->seam = move_between((const float(*)[3])survey->points,
                                     (const float(*)[3])survey->first, survey->point_count);
@@ -184,7 +189,7 @@ static void close_survey(Survey *survey)
 }
 
 Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *scene,
-                         const Assets *assets, const Gpu *gpu, Error *error)
+                         const Assets *assets, const Gpu *gpu, FILE *terminal, Error *error)
 {
     Survey survey = {.scene = scene, .assets = assets};
     *report = (SurveyReport){0};
@@ -196,7 +201,7 @@ Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *sc
                                    scene->run.frames - 1, error));
     THEN(result, fit_create(&survey.fit, scene, framing, error));
     THEN(result, make_room(&survey, error));
-    THEN(result, look(&survey, report, error));
+    THEN(result, look(&survey, report, terminal, error));
     if (result == RESULT_OK) fit_solve(&survey.fit, scene, framing);
     close_survey(&survey);
     report->ms = clock_ms() - begin;

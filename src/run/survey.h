@@ -26,6 +26,7 @@ bool survey_is_wanted(const Scene *scene);
 // anything. Moves the camera of `framing`, which outline_frame has filled in, to fit everything
 // that is drawn (fit_solve): hair, with followers and radii, and the mesh, unless run.framing is
 // hair only. Assumes straight segments; curves of --smooth may reach slightly beyond.
+// Shows its progress on `terminal`, unless it is NULL.
 // RESULT_INTERRUPTED between two frames; other errors as simulation_create and frame_source_look.
 Result survey_fit_camera(Framing *framing, SurveyReport *report, const Scene *scene,
-                         const Assets *assets, const Gpu *gpu, Error *error);
+                         const Assets *assets, const Gpu *gpu, FILE *terminal, Error *error);

@@ -105,6 +105,12 @@ if command -v script >/dev/null; then
     script -qec "$program $hair -q -o -" /dev/null </dev/null >"$work/out" 2>&1
     if [ $? = 2 ]; then good; else bad "status $?"; fi
     says "is a terminal"
+
+    claim "on a terminal, the simulation that fits the camera shows its progress"
+    script -qec "$program $turn --frames 6 -o $work/turn/" /dev/null </dev/null >"$work/out" 2>&1
+    # One bar ends before the bar of the images begins.
+    grep -o '[16]/6 \[' "$work/out" | uniq | tr '\n' ' ' >"$work/bars"
+    in_file "$work/bars" "6/6 [ 1/6 ["
 fi
 
 claim "statistics go to standard output, too"
