@@ -11,6 +11,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -114,6 +115,59 @@ static void what_fails_is_not_kept(void **state)
     assert_int_equal(count_programs(), before);
 }
 
+// --- Files that include others.
+
+enum { FILES = 40, FILES_MOST = 32 };
+
+// Builds file `first` of a chain in which each file includes the next one. Each has `texts[k]` with
+// k = 0 for all files but the last one, where k = 1.
+static Result build_chain(int first, const char *const texts[2], Error *error)
+{
+    static GlslSource sources[FILES + 1];
+    static char names[FILES][16], contents[FILES][200];
+    GLuint program;
+    for (int i = 0; i < FILES; ++i) {
+        snprintf(names[i], sizeof names[i], "chain_%d.comp", i);
+        if (i + 1 < FILES)
+            snprintf(contents[i], sizeof contents[i], "// first\n#include \"chain_%d.comp\"\n%s",
+                     i + 1, texts[0]);
+        else
+            snprintf(contents[i], sizeof contents[i], "%s", texts[1]);
+        sources[i] = (GlslSource){names[i], contents[i]};
+    }
+    shader_add_sources(sources);
+    Result result = shader_build_compute(&program, names[first], NULL, error);
+    shader_add_sources(TEST_GLSL_SOURCES);
+    if (result == RESULT_OK) shader_release(program);
+    return result;
+}
+
+#define MAIN "layout(local_size_x = 1) in;\nvoid main() {}\n"
+
+// An error in a shader names the file that has it, and its line in this file.
+static void errors_in_shaders_have_a_place(void **state)
+{
+    static const struct {
+        int first;
+        const char *texts[2], *message;
+    } cases[] = {
+        {FILES - FILES_MOST, {"", MAIN}, NULL},
+        {FILES - FILES_MOST - 1, {"", MAIN}, "glsl/chain_39.comp: too many includes"},
+        {FILES - 3, {"", "\nint x = y;\n" MAIN}, "glsl/chain_39.comp:2: "},
+        {FILES - 2, {"int x = y;\n", MAIN}, "glsl/chain_38.comp:3: "},
+        {FILES - 2, {"", "#include \"nowhere.glsl\"\n"}, "glsl/nowhere.glsl: no such shader file"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        Error error = {{0}};
+        Result result = build_chain(cases[i].first, cases[i].texts, &error);
+        const char *message = cases[i].message ? cases[i].message : "";
+        assert_int_equal(result, cases[i].message ? RESULT_FAILED : RESULT_OK);
+        if (!strstr(error.text, message)) fail_msg("'%s' lacks '%s'", error.text, message);
+        assert_null(strchr(error.text, '\n'));
+    }
+}
+
 // --- Artificial errors of functions.
 
 enum { GROUPS = 64, FUNCTIONS = 10, RESULTS = 4 * FUNCTIONS * GROUPS };
@@ -176,6 +230,7 @@ int main(void)
         cmocka_unit_test(the_same_files_and_macros_are_one_program),
         cmocka_unit_test(the_number_of_kept_unused_programs_is_limited),
         cmocka_unit_test(what_fails_is_not_kept),
+        cmocka_unit_test(errors_in_shaders_have_a_place),
         cmocka_unit_test(functions_have_the_artificial_error_that_was_asked_for),
     };
     return cmocka_run_group_tests_name("shader", tests, open_gpu, close_gpu);
