@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Equal GPUs are told apart by the system's data, and messages explain why a GPU can't be used. No
-// GPU is needed: the test imitates the system's folders.
+// GPU is needed for this: the test imitates the system's folders. The devices that there are open
+// by number, and in their order.
+#include "gpu/gpu.h"
 #include "gpu/gpu_device.h"
+#include "gpu/gpu_egl.h"
 #include "support/temporary.h"
 
 #include <setjmp.h>
@@ -98,6 +101,51 @@ static void a_gpu_that_cannot_be_used_is_explained(void **state)
     assert_non_null(strstr(why.text, "'render'"));
 }
 
+// Tries a device as the option --device does. Returns whether it opens, and its path.
+static bool opens(const GpuOptions *options, char path[64], bool *software)
+{
+    Gpu gpu;
+    Error error = {{0}};
+    Result result = gpu_create(&gpu, options, &error);
+    if (result != RESULT_OK) {
+        assert_int_equal(result, RESULT_NO_GL);
+        return false;
+    }
+    snprintf(path, 64, "%s", gpu.path);
+    *software = gpu.software;
+    gpu_destroy(&gpu);
+    return true;
+}
+
+// Each device opens by its number, whatever its kind. Without a name the first device that works is
+// taken, a hardware device before a CPU driver; EGL without a device comes after all of them.
+static void devices_open_by_number_and_in_their_order(void **state)
+{
+    GpuDevices devices = {0};
+    Error error = {{0}};
+    char path[64], first[2][64] = {"", ""}; // of hardware, of CPU drivers
+    bool software;
+    (void)state;
+    if (gpu_egl_find_devices(&devices, &error) != RESULT_OK) skip();
+    for (int i = 0; i < devices.count; ++i) {
+        char number[16], expected[64];
+        snprintf(number, sizeof number, "%d", i);
+        snprintf(expected, sizeof expected, "EGL device %d", i);
+        const GpuOptions options = {.backend = BACKEND_EGL, .device = number};
+        if (!opens(&options, path, &software)) continue;
+        assert_string_equal(path, expected);
+        if (!*first[devices.device[i].software])
+            snprintf(first[devices.device[i].software], 64, "%s", path);
+    }
+    if (!*first[0] && !*first[1]) skip();
+    assert_true(opens(&(GpuOptions){.backend = BACKEND_EGL}, path, &software));
+    assert_string_equal(path, *first[0] ? first[0] : first[1]);
+    if (!*first[1]) return;
+    assert_true(opens(&(GpuOptions){.backend = BACKEND_EGL, .software = true}, path, &software));
+    assert_string_equal(path, first[1]);
+    assert_true(software);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
@@ -105,6 +153,7 @@ int main(void)
         TEST(a_node_has_the_address_of_its_pci_device),
         TEST(a_device_is_named_by_what_its_list_shows),
         TEST(a_gpu_that_cannot_be_used_is_explained),
+        TEST(devices_open_by_number_and_in_their_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
