@@ -102,11 +102,10 @@ static void a_gpu_that_cannot_be_used_is_explained(void **state)
 }
 
 // Tries a device as the option --device does. Returns whether it opens, and its path.
-static bool opens(const GpuOptions *options, char path[64], bool *software)
+static bool opens(const GpuOptions *options, char path[64], bool *software, Error *error)
 {
     Gpu gpu;
-    Error error = {{0}};
-    Result result = gpu_create(&gpu, options, &error);
+    Result result = gpu_create(&gpu, options, error);
     if (result != RESULT_OK) {
         assert_int_equal(result, RESULT_NO_GL);
         return false;
@@ -117,8 +116,9 @@ static bool opens(const GpuOptions *options, char path[64], bool *software)
     return true;
 }
 
-// Each device opens by its number, whatever its kind. Without a name the first device that works is
-// taken, a hardware device before a CPU driver; EGL without a device comes after all of them.
+// Each device with a context opens by its number, whatever its kind, or the message says why it
+// does not. Without a name the first device that works is taken, a hardware device before a CPU
+// driver; EGL without a device comes after all of them.
 static void devices_open_by_number_and_in_their_order(void **state)
 {
     GpuDevices devices = {0};
@@ -128,20 +128,27 @@ static void devices_open_by_number_and_in_their_order(void **state)
     (void)state;
     if (gpu_egl_find_devices(&devices, &error) != RESULT_OK) skip();
     for (int i = 0; i < devices.count; ++i) {
-        char number[16], expected[64];
+        char number[16], expected[64], *kind = first[devices.device[i].software];
+        EglContext context;
+        if (gpu_egl_create(&context, devices.device[i].egl, false, &error) != RESULT_OK) continue;
+        gpu_egl_destroy(&context);
         snprintf(number, sizeof number, "%d", i);
         snprintf(expected, sizeof expected, "EGL device %d", i);
         const GpuOptions options = {.backend = BACKEND_EGL, .device = number};
-        if (!opens(&options, path, &software)) continue;
-        assert_string_equal(path, expected);
-        if (!*first[devices.device[i].software])
-            snprintf(first[devices.device[i].software], 64, "%s", path);
+        if (opens(&options, path, &software, &error)) {
+            assert_string_equal(path, expected);
+            if (!*kind) snprintf(kind, 64, "%s", path);
+        } else if (!strstr(error.text, expected)) {
+            fail_msg("'%s' lacks '%s'", error.text, expected);
+        }
     }
     if (!*first[0] && !*first[1]) skip();
-    assert_true(opens(&(GpuOptions){.backend = BACKEND_EGL}, path, &software));
+    GpuOptions options = {.backend = BACKEND_EGL};
+    assert_true(opens(&options, path, &software, &error));
     assert_string_equal(path, *first[0] ? first[0] : first[1]);
     if (!*first[1]) return;
-    assert_true(opens(&(GpuOptions){.backend = BACKEND_EGL, .software = true}, path, &software));
+    options.software = true;
+    assert_true(opens(&options, path, &software, &error));
     assert_string_equal(path, first[1]);
     assert_true(software);
 }
