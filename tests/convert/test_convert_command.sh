@@ -49,6 +49,27 @@ if cmp -s "$work/a.data" "$work/c.data"; then bad "the order makes no difference
 run 0 "$work/a.data" --unit m --stats; sed -n 2,4p "$work/out" >"$work/a.box"
 run 0 "$work/b.data" --unit m --stats; sed -n 2,4p "$work/out" >"$work/b.box"; equal "$work/a.box" "$work/b.box"
 
+claim "every step changes hair, and repeated steps add up"
+# step A B: the steps A and B give the same hair, which is not that of the file.
+step() {
+    # shellcheck disable=SC2086 # they are words
+    run 0 $curls --unit m -q $1 -o "$work/a.data"
+    # shellcheck disable=SC2086
+    run 0 $curls --unit m -q $2 -o "$work/b.data"; equal "$work/a.data" "$work/b.data"
+    if cmp -s "$work/a.data" "$work/direct.data"; then bad "$1 does nothing"; else good; fi
+}
+step "--smooth 3" "--smooth 1 --smooth 2"
+step "--nth 6" "--nth 2 --nth 3"
+step "--min-length 0.2" "--min-length 0.1 --min-length 0.2"
+step "--resample 9" "--resample 9 --min-length 0.0001"
+step "--resample-spline 9" "--resample-spline 9 --min-length 0.0001"
+step "--spacing 0.01" "--spacing 0.01 --min-length 0.0001"
+step "--scale 8" "--scale 2 --scale 4"
+step "--translate 4,2,1" "--translate 4,2,1 --translate 0,0,0"
+step "--rotate y,90" "--rotate y,90 --scale 1"
+step "--reverse" "--reverse --reverse --reverse"
+step "--subsample 50%" "--subsample 0.5"
+
 claim "strands and vertices become as many as asked for"
 run 0 $curls --nth 3 --resample 7 --stats; says "vertices                     7           7"
 strands=$(sed -n '1s/ .*//p' "$work/out")
@@ -273,6 +294,16 @@ run 2 assets/bob.tfx --mesh assets/head.obj --push-out -1 -o "$work/unfit.tfx"; 
 run 3 assets/bob.tfx --mesh assets/bob.tfx --attach -o "$work/unfit.tfx"; says "expected a mesh (tractrix-render takes hair without --mesh)"; one_line
 run 3 assets/head.obj; says "not hair: expected hair (pass a mesh with --mesh)"; one_line
 none "$work/unfit.tfx"
+
+claim "a mesh has its own unit and axis"
+# The box again, 0.96 m high, the same with z up, and in millimetres.
+awk '/^v/ { $3 *= 0.96 } { print }' "$work/box.obj" >"$work/low.obj"
+awk '/^v/ { print "v", $2, -$4, $3 } /^f/' "$work/low.obj" >"$work/low_z.obj"
+awk '/^v/ { print "v", 1000 * $2, 1000 * $3, 1000 * $4 } /^f/' "$work/low_z.obj" >"$work/low_mm.obj"
+run 0 "$work/above.obj" --unit m --mesh "$work/low.obj" --mesh-unit m --mesh-up y --attach -o "$work/a.tfx"; says "by at most 25 mm"
+run 0 "$work/above.obj" --unit m --mesh "$work/low_z.obj" --mesh-unit m --mesh-up z --attach -o "$work/b.tfx"; equal "$work/a.tfx" "$work/b.tfx"
+run 0 "$work/above.obj" --unit m --mesh "$work/low_mm.obj" --mesh-unit mm --mesh-up z --attach -o "$work/b.tfx"; says "by at most 25 mm"
+run 0 "$work/above.obj" --unit m --mesh "$work/low.obj" --attach -o "$work/b.tfx"; equal "$work/a.tfx" "$work/b.tfx"
 
 claim "a mesh has the unit of the hair, also of several files and of numbered ones"
 run 0 assets/bob.tfx -q --unit m --mesh assets/head.obj --stats; grep "inside the mesh" "$work/out" >"$work/inside"
