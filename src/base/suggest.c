@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// A name is near the word if it differs by at most one edit per three letters and three in all, or
-// if the word is its beginning.
+// A name is near the word if it differs by at most one edit per three letters and three in all, if
+// the word is its beginning, or if one of them ends in the other as a whole word.
 enum { LONGEST = 63, LETTERS_AN_EDIT = 3, MOST_EDITS = 3, SHORTEST_BEGINNING = 3 };
 
 static int fold(char character)
@@ -20,6 +20,15 @@ static bool begins(const char *name, const char *word)
 {
     while (*word && fold(*word) == fold(*name)) word++, name++;
     return !*word;
+}
+
+// Whether `end` is the end of `text` from a '-' or '_' on: "tolerance" of "pixel-tolerance".
+static bool ends_in(const char *text, const char *end)
+{
+    size_t length = strlen(text), part = strlen(end);
+    if (part < SHORTEST_BEGINNING || length <= part || fold(text[length - part - 1]) != '_')
+        return false;
+    return begins(text + length - part, end);
 }
 
 static int least(int a, int b)
@@ -60,7 +69,11 @@ const char *suggest_nearest(const char *word, const char *const *names, size_t c
         bool cut_short = length >= SHORTEST_BEGINNING && begins(names[i], word);
         // If two names are equally near, prefer the one that the user abbreviated.
         int rank = 2 * edits - cut_short;
-        if ((edits > most && !cut_short) || rank >= lowest) continue;
+        bool near = edits <= most || cut_short;
+        // A common last word counts between one and two edits.
+        if (ends_in(names[i], word) || ends_in(word, names[i]))
+            rank = near ? least(rank, 3) : 3, near = true;
+        if (!near || rank >= lowest) continue;
         lowest = rank;
         nearest = names[i];
     }

@@ -299,6 +299,12 @@ static void the_nearest_name_is_suggested_if_it_is_near(void **state)
     assert_string_equal(suggest_nearest("spilt", SOLVERS, 3), "split");
     static const char *const FRAMES[] = {"drag", "frames"};
     assert_string_equal(suggest_nearest("fram", FRAMES, 2), "frames");
+    static const char *const COLORS[] = {"tip_color", "color", "pixel-tolerance", "size"};
+    assert_string_equal(suggest_nearest("tolerance", COLORS, 4), "pixel-tolerance");
+    assert_string_equal(suggest_nearest("hair-color", COLORS, 4), "color");
+    assert_string_equal(suggest_nearest("tip-colors", COLORS, 4), "tip_color");
+    assert_null(suggest_nearest("oversize", COLORS, 4));
+    assert_null(suggest_nearest("ce", COLORS, 4));
     assert_null(suggest_nearest("drag", NAMES, 0));
     char word[1000];
     memset(word, 'w', sizeof word);
