@@ -330,7 +330,8 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     TRY(check_shrink(command, &before, error));
     if (argc - first != 2)
         return error_set(error, RESULT_USAGE,
-                         "got %d names, expected two files, folders or patterns", argc - first);
+                         "got %d name%s, expected two files, folders or patterns", argc - first,
+                         argc - first == 1 ? "" : "s");
     command->a = argv[first], command->b = argv[first + 1];
     TRY(check_reports(command, error));
     TRY(check_platform(command, error));

@@ -2,6 +2,7 @@
 #include "compare/pairs.h"
 
 #include "base/bytes.h"
+#include "base/suggest.h"
 #include "base/target.h"
 
 #include <dirent.h>
@@ -313,11 +314,23 @@ static void pair_destroy(Pair *pair)
     free(pair->fallback);
 }
 
+// ": did you mean 'x.png'?" if an image has a similar name.
+static void suggest(const PairList *list, const char *name, char *words, size_t size)
+{
+    const char **names = malloc((list->count + 1) * sizeof *names);
+    for (size_t i = 0; names && i < list->count; ++i) names[i] = list->pairs[i].name;
+    const char *nearest = names ? suggest_nearest(name, names, list->count) : NULL;
+    if (nearest) snprintf(words, size, ": did you mean '%.100s'?", nearest);
+    free(names);
+}
+
 // Removes all pairs that `name` does not mean.
 static Result keep_only(PairList *list, const char *name, Error *error)
 {
     Side named = side_of_name(name);
+    char words[200] = "";
     size_t kept = 0;
+    suggest(list, name, words, sizeof words);
     for (size_t i = 0; i < list->count; ++i)
         if (is_of(&named, &list->pairs[i]))
             list->pairs[kept++] = list->pairs[i];
@@ -326,7 +339,7 @@ static Result keep_only(PairList *list, const char *name, Error *error)
     list->count = kept;
     target_destroy(&named.target);
     if (kept) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "--only %s: no image of this name", name);
+    return error_set(error, RESULT_BAD_INPUT, "--only %s: no image of this name%s", name, words);
 }
 
 // --- Masks.

@@ -172,7 +172,9 @@ counts "$work/report.json" '"command": "draw -o f_%d.pfm"' 2; counts "$work/repo
 run 0 "$work/a" "$work/b" --only f_1.pfm; says "1 image: 1 same"
 run 1 "$work/a" "$work/b" --only f_%d.pfm; says "2 images: 1 same, 1 missing"
 run 0 "$work/a" "$work/b" --only f_1.pfm --mask "$work/masks" # the mask of another image
-run 3 "$work/a" "$work/b" --only f_3.pfm; one_line; says "--only f_3.pfm: no image of this name"
+run 3 "$work/a" "$work/b" --only f_3.pfm; one_line; says "--only f_3.pfm: no image of this name: did you mean 'f_1.pfm'?"
+run 3 "$work/a" "$work/b" --only f_2; one_line; says "--only f_2: no image of this name: did you mean 'f_2.pfm'?"
+run 2 "$work/a"; one_line; says "got 1 name, expected two"
 run 2 $a $b --only f_1.pfm; one_line; says "expected two folders"
 
 finish
