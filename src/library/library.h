@@ -82,6 +82,10 @@ void library_drop_device(TractrixDevice *device);
 
 // Finds a parameter that callers may set. NULL if there is none of this name.
 const ParamInfo *library_parameter(const char *name);
+
+// RESULT_USAGE for a name without a parameter, with a similar name if there is one.
+Result library_refuse_name(const char *name, Error *error);
+
 // Whether tractrix_simulation_set may change the parameter.
 bool library_is_live(const ParamInfo *info);
 

@@ -233,7 +233,7 @@ TractrixResult tractrix_scene_parse(TractrixScene **scene, const char *json, con
 
 // --- Parameters.
 
-static Result refuse_name(const char *name, Error *error)
+Result library_refuse_name(const char *name, Error *error)
 {
     char words[200];
     const char *names[SCENE_PARAMS];
@@ -250,7 +250,7 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
                   Error *error)
 {
     const ParamInfo *info = library_parameter(name);
-    if (!info) return refuse_name(name, error);
+    if (!info) return library_refuse_name(name, error);
     if (section < -1 || section >= (int)scene->scene.section_count)
         return error_set(error, RESULT_USAGE, "section: got %d, expected -1 to %d", section,
                          (int)scene->scene.section_count - 1);

@@ -160,9 +160,12 @@ double tractrix_simulation_time(const TractrixSimulation *simulation)
 static Result set(TractrixSimulation *simulation, const char *name, const char *text, Error *error)
 {
     const ParamInfo *info = library_parameter(name);
-    if (!info || !library_is_live(info))
+    if (!info) return library_refuse_name(name, error);
+    if (!library_is_live(info))
         return error_set(error, RESULT_USAGE,
-                         "%s: expected a live parameter (tractrix_parameter: live)", name);
+                         "%s: cannot change during a simulation: expected a live parameter, such "
+                         "as wind or eye (tractrix_parameter: live)",
+                         name);
     Result result = scene_set(&simulation->scene, -1, info, text, error);
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", info->name);
     simulation->aims += info->group == GROUP_CAMERA;

@@ -233,6 +233,8 @@ static void refuses_wrong_poses(void **state)
                     TRACTRIX_USAGE, "deforms");
     library_refused(tractrix_simulation_set(simulation, "drag", "1", &error), TRACTRIX_USAGE,
                     "live");
+    library_refused(tractrix_simulation_set(simulation, "wnid", "1,0,0", &error), TRACTRIX_USAGE,
+                    "wnid: the library has no such parameter: did you mean 'wind'?");
     library_refused(tractrix_simulation_set(simulation, "wind", "1", &error), TRACTRIX_USAGE,
                     "wind: ");
     tractrix_simulation_destroy(simulation);
