@@ -20,8 +20,10 @@
 #include "sim/simulation.h"
 #include "sim/volume.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static Result run_stress(const BenchOptions *arguments, const Gpu *gpu, Error *error)
 {
@@ -415,9 +417,15 @@ static Result check_paths(const BenchOptions *options, Error *error)
     PathUse *uses = malloc((OWN + (size_t)options->file_count) * sizeof *uses);
     if (!uses) return error_set(error, RESULT_FAILED, "no memory for paths");
     memcpy(uses, own, sizeof own);
-    for (int i = 0; i < options->file_count; ++i)
-        uses[OWN + i] = (PathUse){"the file", options->files[i], PATH_READ, NULL};
-    Result result = paths_claim(uses, OWN + options->file_count, error);
+    Result result = RESULT_OK;
+    for (int i = 0; i < options->file_count; ++i) {
+        const char *file = options->files[i];
+        uses[OWN + i] = (PathUse){"the file", file, PATH_READ, NULL};
+        // Some commands measure for minutes before they read it.
+        if (result == RESULT_OK && strcmp(file, "-") != 0 && access(file, R_OK) != 0)
+            result = error_set(error, RESULT_BAD_INPUT, "%s: %s", file, strerror(errno));
+    }
+    THEN(result, paths_claim(uses, OWN + options->file_count, error));
     free(uses);
     return result;
 }

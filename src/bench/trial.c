@@ -364,7 +364,8 @@ static Result read_motions(MotionFolder *folder, const glob_t *found, Error *err
     folder->whole = in_mean == MEAN_COUNT;
     if (folder->count > 0) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT,
-                     "%s: no reference motions: expected NAME.csv with NAME.json in this folder",
+                     "%s: no reference motions: expected NAME.csv with NAME.json in this folder; "
+                     "the project's are in its sources, others are named with --reference DIR",
                      folder->path);
 }
 
