@@ -41,12 +41,15 @@ for channel in r g b; do
     same "$(field "$work/blond.csv" mean_$channel | head -2 | awk '{ good += $1 > 0.85 && $1 < 1.15 } END { print good }')" 2 "means of $channel"
 done
 
-claim "both rasterisers cover the same"
-run 0 light --case fur_brown_side --way grid --raster quads --frames 1 --csv "$work/quads.csv"
-run 0 light --case fur_brown_side --way grid --raster blocks --frames 1 --csv "$work/blocks.csv"
-same "$(field "$work/quads.csv" raster | head -1) $(field "$work/blocks.csv" raster | head -1)" "quads blocks" "rasterisers"
+# With 8 cells the means are off by 2.5 %, equally with both. Measured differences: up to 0.0027.
+claim "both rasterisers show the same light and cover the same"
+for raster in quads blocks; do
+    run 0 light --case fur_brown_side --way grid --raster $raster --frames 1 --render='--scatter-cells 8' --csv "$work/$raster.csv"
+    same "$(field "$work/$raster.csv" raster | head -1)" $raster "rasteriser"
+done
 for name in coverage mean_r mean_g mean_b; do
-    same "$(field "$work/quads.csv" $name | head -1 | cut -c 1-3)" "$(field "$work/blocks.csv" $name | head -1 | cut -c 1-3)" "$name, two digits"
+    same "$(for raster in quads blocks; do field "$work/$raster.csv" $name | head -1; done |
+        awk '{ value[NR] = $1 } END { print NR, (value[1] > 0.9 && (value[1] - value[2]) ^ 2 < 0.005 ^ 2) }')" "2 1" "$name"
 done
 
 # A picture has two tiles of 16 x 16.

@@ -5,7 +5,7 @@
 program=scripts/turntable
 turns=$work/turns
 export TRACTRIX_BIN="$bin" TURNTABLE_OUT="$turns" TURNTABLE_S=0.5
-small="--size 64x48 --quality draft --preroll 0.1"
+small="--size 64x48 --quality draft --look plain --followers 0 --preroll 0.1"
 
 # stream FILE EXPECTED: compares codec, size, pixel format and frames, as ffprobe reports them.
 stream() {
