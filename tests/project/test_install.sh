@@ -35,15 +35,15 @@ for file in $(git ls-files examples 2>/dev/null); do equal "$file" "$share/doc/t
 claim "an installed program needs nothing of the checkout"
 program=$root/usr/bin/tractrix-render
 cd "$work" || exit 1
-run 0 "$share/tractrix/demo.json" --frames 1 --size 64x48 -q -o "$work/installed/"
+run 0 "$share/tractrix/demo.json" --frames 1 --preroll 0 --exposure 0 --size 64x48 -q -o "$work/installed/"
 program=$root/usr/bin/tractrix-turntable
 export TURNTABLE_S=0.1 TURNTABLE_OUT="$work/turn"
-run 0 "$share/tractrix/fur.tfx" frames --size 48x32 --quality draft --preroll 0 -q
+run 0 "$share/tractrix/fur.tfx" frames --size 48x32 --quality draft --look plain --preroll 0 -q
 unset TURNTABLE_S TURNTABLE_OUT
 program=$root/usr/bin/tractrix-farm
-run 0 -n 2 plain -o "$work/farm/" "$share/tractrix/fur.tfx" --frames 2 --size 48x32 -q
+run 0 -n 2 plain -o "$work/farm/" "$share/tractrix/fur.tfx" --frames 2 --look plain --size 48x32 -q
 program=$root/usr/bin/tractrix-compare-goldens
-printf 'fur %s --frames 1 --size 48x32\n' "$share/tractrix/fur.tfx" >"$work/list"
+printf 'fur %s --frames 1 --look plain --size 48x32\n' "$share/tractrix/fur.tfx" >"$work/list"
 run 0 "$work/list" "$work/goldens/" "$work/compared/" --update
 run 0 "$work/list" "$work/goldens/" "$work/compared/"
 for name in farm turntable compare-goldens; do
@@ -63,12 +63,13 @@ claim "30 lines of C against the installed library draw what tractrix-render dra
 if grep -q fsanitize "$bin/flags"; then
     skip "libraries of a sanitizer's build"
 else
-    awk '/^```/ { inside = $0 == "```c" && !seen++; next } inside' docs/library.md >"$work/first.c"
+    # Smaller than in the page: 160x120.
+    awk '/^```/ { inside = $0 == "```c" && !seen++; next } inside' docs/library.md | sed 's/640/160/g; s/480/120/g' >"$work/first.c"
     export PKG_CONFIG_PATH="$root/usr/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
     # shellcheck disable=SC2046 # words
     holds cc -o "$work/first" "$work/first.c" $(pkg-config --cflags --libs tractrix)
     (cd "$work" && LD_LIBRARY_PATH="$root/usr/lib" ./first "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
-    run 0 "$share/tractrix/fur.tfx" --size 640x480 -q -o "$work/rendered.png"
+    run 0 "$share/tractrix/fur.tfx" --size 160x120 -q -o "$work/rendered.png"
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
     # shellcheck disable=SC2046
     holds cc -o "$work/static" "$work/first.c" -I"$root/usr/include" "$root/usr/lib/libtractrix.a" \
@@ -111,19 +112,19 @@ fi
 
 claim "TRACTRIX_GLSL_DIR gives other shaders, and tells what is wrong with them"
 cp -r glsl "$work/glsl"
-run 0 assets/fur.tfx --frames 1 --size 64x48 -q -o "$work/own.png"
+run 0 assets/fur.tfx --frames 1 --look plain --size 64x48 -q -o "$work/own.png"
 TRACTRIX_GLSL_DIR=$work/glsl
 export TRACTRIX_GLSL_DIR
-run 0 assets/fur.tfx --frames 1 --size 64x48 -q --stats "$work/stats.json" -o "$work/same.png"
+run 0 assets/fur.tfx --frames 1 --look plain --size 64x48 -q --stats "$work/stats.json" -o "$work/same.png"
 equal "$work/own.png" "$work/same.png"
 in_file "$work/stats.json" "$TRACTRIX_GLSL_DIR"
 chmod u+w "$work/glsl/draw/block_project.comp"
 sed 's/^void main()/this is no GLSL\n&/' glsl/draw/block_project.comp >"$work/glsl/draw/block_project.comp"
-run 1 assets/fur.tfx --frames 1 --size 64x48 --raster compute -q -o "$work/none.png"
+run 1 assets/fur.tfx --frames 1 --look plain --size 64x48 --raster compute -q -o "$work/none.png"
 says "block_project.comp:$(grep -n '^this' "$work/glsl/draw/block_project.comp" | cut -d: -f1)"; one_line
 none "$work/none.png"
 rm "$work/glsl/draw/block_project.comp"
-run 3 assets/fur.tfx --frames 1 --size 64x48 --raster compute -q -o "$work/none.png"; says "block_project.comp"; one_line
+run 3 assets/fur.tfx --frames 1 --look plain --size 64x48 --raster compute -q -o "$work/none.png"; says "block_project.comp"; one_line
 none "$work/none.png"
 
 finish

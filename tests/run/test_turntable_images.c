@@ -14,13 +14,16 @@
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
+// Light is no claim here.
+#define UNLIT "--scatter none --exposure 0"
+
 // Runs tractrix-render with these arguments; the images go to FOLDER.
 static void render(void **state, const char *arguments, const char *folder)
 {
     char line[1500];
     const char *programs = getenv("TRACTRIX_BIN");
-    snprintf(line, sizeof line, "%s/tractrix-render --scatter none %s --size %dx%d -q -o '%s/'",
-             programs ? programs : "out/release", arguments, WIDTH, HEIGHT,
+    snprintf(line, sizeof line, "%s/tractrix-render %s %s --size %dx%d -q -o '%s/'",
+             programs ? programs : "out/release", UNLIT, arguments, WIDTH, HEIGHT,
              temporary_path(state, folder));
     assert_int_equal(system(line), 0);
 }
@@ -84,8 +87,8 @@ static void so_do_followers_drawn_from_a_cache(void **state)
     const char *hair = "assets/curls.tfx --followers 3 --follower-radius 0.02 --tip-separation 2 "
                        "--style 0.3 --turntable 360 --margin 0.25 --frames 16";
     char line[1000];
-    snprintf(line, sizeof line, "%s/tractrix-render --scatter none %s -q --cache '%s'",
-             getenv("TRACTRIX_BIN"), hair, temporary_path(state, "x.cache"));
+    snprintf(line, sizeof line, "%s/tractrix-render %s -q --cache '%s'", getenv("TRACTRIX_BIN"),
+             hair, temporary_path(state, "x.cache"));
     assert_int_equal(system(line), 0);
     snprintf(line, sizeof line, "%s --from-cache '%s'", hair, temporary_path(state, "x.cache"));
     margins_are_kept(state, line);
@@ -124,8 +127,8 @@ static void a_contact_sheet_shows_the_frames(void **state)
     const char *hair = "assets/fur.tfx --frames 12 --turntable 360";
     render(state, hair, "all");
     snprintf(line, sizeof line,
-             "%s/tractrix-render --scatter none %s --size %dx%d -q --contact-sheet %dx%d -o '%s'",
-             getenv("TRACTRIX_BIN"), hair, WIDTH, HEIGHT, COLUMNS, ROWS,
+             "%s/tractrix-render %s %s --size %dx%d -q --contact-sheet %dx%d -o '%s'",
+             getenv("TRACTRIX_BIN"), UNLIT, hair, WIDTH, HEIGHT, COLUMNS, ROWS,
              temporary_path(state, "sheet.png"));
     assert_int_equal(system(line), 0);
     assert_int_equal(png_read(&sheet, temporary_path(state, "sheet.png"), &error), RESULT_OK);
