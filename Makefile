@@ -246,7 +246,10 @@ mutate: ## put small faults into the code, one at a time; check that a test fail
 	@scripts/mutate $(MUTATE)
 
 SEED = 1
-torture: all tests ## let every system call of small runs fail in turn, kill 200 runs: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
+# Tests whose long forms take too long for `make test`.
+LONG_TESTS = ^test_stress\.c
+torture: all tests ## let every system call of small runs fail in turn, kill 200 runs, run long tests: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
+	@TEST_LONG=1 tests/runner $(OUT) '$(LONG_TESTS)'
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
 growth: all tests ## make 10,000 scenes and simulations and 100 devices with the library, count memory that stays: five minutes

@@ -56,7 +56,7 @@ same "$(field "$work/rates.csv" rate | tr '\n' ' ')" "30 120 " "rates"
 same "$(field "$work/rates.csv" settings | sort -u) $(field "$work/rates.csv" verdict | sort -u)" "--style 0.9 " "settings and verdict"
 
 claim "hair swings more without a style, and hair that does not collide is deeper in the head"
-measure() { "$program" groom "$work/hair.tfx" --mesh "$work/head.obj" --algo chain --rates 60 --csv "$work/m.csv" "$@" >/dev/null 2>&1; }
+measure() { "$program" groom "$work/hair.tfx" --mesh "$work/head.obj" --algo chain --rates 60 --part shake --csv "$work/m.csv" "$@" >/dev/null 2>&1; }
 measure --style 0.9; stiff=$(field "$work/m.csv" swing)
 measure --style 0; loose=$(field "$work/m.csv" swing) out=$(field "$work/m.csv" deep_shake)
 same "$(field "$work/m.csv" head)" mesh "head"

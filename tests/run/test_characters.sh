@@ -48,13 +48,13 @@ run 3 $scene -q -o "$work/x/"; one_line; says "head_3.obj: missing: expected fil
 claim "numbers may begin anywhere, and a far one is a gap at once; a mesh that stands still may come through a pipe"
 mkdir "$work/far"
 cp assets/ball.obj "$work/far/x_20240101.obj"
-run 0 assets/curls.tfx --mesh "$work/far/x_%d.obj" --frames 1 --size 32x24 -q -o "$work/far.png"
+run 0 assets/curls.tfx --mesh "$work/far/x_%d.obj" --look plain --followers 0 --frames 1 --size 32x24 -q -o "$work/far.png"
 cp assets/ball.obj "$work/far/x_999999999.obj"
-run 3 assets/curls.tfx --mesh "$work/far/x_%d.obj" --frames 1 --size 32x24 -q -o "$work/far.png"; one_line
+run 3 assets/curls.tfx --mesh "$work/far/x_%d.obj" --look plain --followers 0 --frames 1 --size 32x24 -q -o "$work/far.png"; one_line
 says "x_20240102.obj: missing: expected files for samples 20240101 to 999999999 without gaps"
 # shellcheck disable=SC2002 # the test needs a pipe
-cat assets/ball.obj | "$program" assets/curls.tfx --mesh /dev/stdin --frames 1 --size 32x24 -q -o "$work/piped.png" 2>"$work/err"
-run 0 assets/curls.tfx --mesh assets/ball.obj --frames 1 --size 32x24 -q -o "$work/named.png"
+cat assets/ball.obj | "$program" assets/curls.tfx --mesh /dev/stdin --look plain --followers 0 --frames 1 --size 32x24 -q -o "$work/piped.png" 2>"$work/err"
+run 0 assets/curls.tfx --mesh assets/ball.obj --look plain --followers 0 --frames 1 --size 32x24 -q -o "$work/named.png"
 same_images "$work/piped.png" "$work/named.png"
 sed 's/^f .*/f 1 2 3/;3q' assets/head.obj >"$work/head_3.obj"; echo "f 1 2 2" >>"$work/head_3.obj"
 run 3 $scene -q -o "$work/x/"; one_line; says "head_3.obj: 2 vertices: expected 6002"
