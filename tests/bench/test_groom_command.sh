@@ -67,7 +67,7 @@ true_of "depth, mm" "$in > 20 && $out < 5"
 claim "wrong usage ends with 2, wrong files with 3, and one line behind that of the device"
 says_once() { same "$(grep -vc OpenGL "$work/err")" 1 "lines"; }
 run 2 groom; says "expected hair files"; says_once
-run 2 groom "$work/hair.tfx" --part sheke; says "rest,shake,speed"; says_once
+run 2 groom "$work/hair.tfx" --part sheke; says "did you mean 'shake'"; says_once
 run 2 groom assets/bob.json; says "expected a hair file"; says_once
 run 2 groom "$work/hair.tfx" --render=--no-such-flag; says "--no-such-flag"; says_once
 run 3 groom "$work/nothing.tfx"; says "nothing.tfx"; says_once
