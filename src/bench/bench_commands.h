@@ -52,6 +52,11 @@ Result images_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 // tracer's, times of images, and bounds; with options->picture also images side by side.
 Result light_run(const BenchOptions *options, const Gpu *gpu, Error *error);
 
+// Draws the named scenes, NAME.json, by our own path tracer (light_traced.h), and writes the table
+// NAME.csv of each beside it (light_case.h), so that the folder can be the reference of light_run.
+// RESULT_USAGE without a file.
+Result trace_run(const BenchOptions *options, const Gpu *gpu, Error *error);
+
 // Simulates the named hair files on options->mesh with each solver and rate: at rest, and while the
 // head shakes (groom_stage.h). Parts: rest, shake, speed. RESULT_USAGE without a file.
 Result groom_run(const BenchOptions *options, const Gpu *gpu, Error *error);

@@ -63,7 +63,8 @@ static const Option OPTIONS[] = {
     {"quality", 0, OPTION_STRING, AT(quality), "WORD", 0, 0,
      "image: preset normal, draft or final for options that are not given (default normal)"},
     {"frames", 0, OPTION_WHOLE, AT(bench.frames), "N", 1, 1e6,
-     "image, light: number of measured images (default 15)"},
+     "image, light: number of measured images (default 15); a path tracer follows 8 paths a pixel "
+     "for each"},
     {"no-error", 0, OPTION_SWITCH, AT(bench.no_error), NULL, 0, 0,
      "image: measure times only, not the error"},
     {"cases", 0, OPTION_WHOLE, AT(bench.stress.cases), "N", 1, 1e6,
@@ -77,7 +78,8 @@ static const Option OPTIONS[] = {
      "light: only these methods of computing light, separated by commas, or all (default: methods "
      "with a stated bound); a path tracer: 'traced one' with 1 bounce, 'traced' with 64 bounces"},
     {"render", 0, OPTION_STRING, AT(bench.render), "TEXT", 0, 0,
-     "light, groom: options of tractrix-render for every scene, for example --render='--smooth 3'"},
+     "light, trace, groom: options of tractrix-render for every scene, for example "
+     "--render='--smooth 3'"},
     {"picture", 0, OPTION_STRING, AT(bench.picture), "FILE.png", 0, 0,
      "light: write an image with a row for each case: the case by each method, and by the path "
      "tracer"},

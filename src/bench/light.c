@@ -43,9 +43,8 @@ static const Way WAYS[] = {
     {"map 1024", CURVES "--scatter grid --shadow-size 1024", UNBOUND},
     {"straight", CURVES "--scatter grid --smooth 1", UNBOUND},
     {"traced one", "", LIGHT_ONE, true, NAN, NAN, NAN, NAN, 1},
-    {"traced", "", LIGHT_ALL, true, NAN, NAN, NAN, NAN, 64},
+    {"traced", "", LIGHT_ALL, true, NAN, NAN, NAN, NAN, TRACED_ORDERS},
 };
-enum { TRACED_PATHS = 8 }; // for each pixel and frame of --frames
 enum { WAY_COUNT = sizeof WAYS / sizeof *WAYS };
 
 // `mean_*`: the mean over the tracer's mean; `rel_*`: the RMS difference of blocks over the RMS of
@@ -141,7 +140,7 @@ static void compare(const LightCase *lit, const Way *way, const Image *image, Ro
 static Result measure_traced(LightStage *stage, const LightCase *lit, const Way *way, int frames,
                              Row *row, Error *error)
 {
-    TRY(light_traced_draw(stage, way->orders, TRACED_PATHS * frames, error));
+    TRY(light_traced_draw(stage, &stage->image, way->orders, TRACED_PATHS * frames, error));
     compare(lit, way, &stage->image, row);
     row->moving_ms_min = row->moving_ms_median = row->still_ms_min = row->still_ms_median = NAN;
     return RESULT_OK;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/light_case.h"
 #include "base/csv.h"
+#include "base/outfile.h"
 
 #include <glob.h>
 #include <math.h>
@@ -203,16 +204,35 @@ void light_cases_destroy(LightCases *cases)
 
 // --- Comparing.
 
-void light_case_block(const Image *image, int column, int row, double mean[3])
+void light_case_block(const Image *image, int column, int row, double *mean)
 {
     const float *pixels = (const float *)(const void *)image->pixels;
-    mean[0] = mean[1] = mean[2] = 0;
+    for (int k = 0; k < image->channels; ++k) mean[k] = 0;
     for (size_t i = 0; i < (size_t)LIGHT_BLOCK_PX * LIGHT_BLOCK_PX; ++i) {
         size_t x = (size_t)column * LIGHT_BLOCK_PX + i % LIGHT_BLOCK_PX;
         size_t y = (size_t)row * LIGHT_BLOCK_PX + i / LIGHT_BLOCK_PX;
         const float *pixel = pixels + (y * (size_t)image->width + x) * (size_t)image->channels;
-        for (int k = 0; k < 3; ++k) mean[k] += (double)pixel[k] / (LIGHT_BLOCK_PX * LIGHT_BLOCK_PX);
+        for (int k = 0; k < image->channels; ++k)
+            mean[k] += (double)pixel[k] / (LIGHT_BLOCK_PX * LIGHT_BLOCK_PX);
     }
+}
+
+Result light_case_write(const char *path, const Image *one, const Image *all, Error *error)
+{
+    OutFile file;
+    TRY(outfile_open(&file, path, error));
+    fprintf(file.stream, "column,row,%s,%s,%s,%s,%s,%s,%s\n", COLUMNS[LIGHT_ONE][0],
+            COLUMNS[LIGHT_ONE][1], COLUMNS[LIGHT_ONE][2], COLUMNS[LIGHT_ALL][0],
+            COLUMNS[LIGHT_ALL][1], COLUMNS[LIGHT_ALL][2], COLUMNS[LIGHT_COVERAGE][0]);
+    for (int row = 0; row < one->height / LIGHT_BLOCK_PX; ++row)
+        for (int column = 0; column < one->width / LIGHT_BLOCK_PX; ++column) {
+            double first[4], whole[4];
+            light_case_block(one, column, row, first);
+            light_case_block(all, column, row, whole);
+            fprintf(file.stream, "%d,%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g\n", column, row,
+                    first[0], first[1], first[2], whole[0], whole[1], whole[2], whole[3]);
+        }
+    return outfile_commit(&file, error);
 }
 
 LightError light_case_compare(const LightCase *lit, LightTable table, const Image *image)
@@ -221,7 +241,7 @@ LightError light_case_compare(const LightCase *lit, LightTable table, const Imag
     LightError error;
     for (int i = 0; i < lit->columns * lit->rows; ++i) {
         const double *traced = lit->blocks[table][i];
-        double mean[3];
+        double mean[4];
         light_case_block(image, i % lit->columns, i / lit->columns, mean);
         for (int k = 0; k < 3; ++k) {
             ours[k] += mean[k], theirs[k] += traced[k];

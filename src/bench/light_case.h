@@ -34,6 +34,11 @@ typedef struct LightCases {
 Result light_cases_read(LightCases *cases, const char *folder, const char *names, Error *error);
 void light_cases_destroy(LightCases *cases);
 
+// Writes the table of a case from the path tracer's images with single scattering and with every
+// bounce: IMAGE_FLOATs of 4 channels, the last of which is the coverage, of whole blocks.
+// RESULT_FAILED with path and reason.
+Result light_case_write(const char *path, const Image *one, const Image *all, Error *error);
+
 // Difference of an image from the path tracer's, by channel. `mean`: ratio of the image's mean to
 // the tracer's; `rel`: RMS of the difference of blocks, relative to the RMS of the tracer's blocks.
 typedef struct LightError {
@@ -43,5 +48,5 @@ typedef struct LightError {
 // `image` is an IMAGE_FLOAT whose size is the case's blocks times LIGHT_BLOCK_PX.
 LightError light_case_compare(const LightCase *lit, LightTable table, const Image *image);
 
-// The block's mean in each channel.
-void light_case_block(const Image *image, int column, int row, double mean[3]);
+// The block's mean in each channel of the image.
+void light_case_block(const Image *image, int column, int row, double *mean);

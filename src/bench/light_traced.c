@@ -53,16 +53,16 @@ static bool has_mesh(const Assets *assets)
     return any;
 }
 
-Result light_traced_draw(LightStage *stage, int orders, int paths, Error *error)
+Result light_traced_draw(LightStage *stage, Image *image, int orders, int paths, Error *error)
 {
     const Scene *scene = &stage->scene;
     LightReferenceItem items[SCENE_MAX_SECTIONS];
     Light lights[SCENE_MAX_LIGHTS];
     float around[2][3];
-    if (has_mesh(&stage->assets) || stage->assets.environment.parts)
-        return error_set(
-            error, RESULT_USAGE,
-            "--way traced: the scene has a mesh or an environment: expected hair only");
+    Environment environment = {0}; // with its image, which assets need not keep
+    if (has_mesh(&stage->assets))
+        return error_set(error, RESULT_USAGE,
+                         "--way traced: the scene has a mesh: expected hair only");
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(take_section(&scene->sections[i].params, &stage->assets.strands[i],
                          &stage->simulation.sections[i].hair, &items[i], error));
@@ -71,12 +71,19 @@ Result light_traced_draw(LightStage *stage, int orders, int paths, Error *error)
         around[0][c] = (float)image_linear_from_srgb((double)scene->run.sky[c]);
         around[1][c] = (float)image_linear_from_srgb((double)scene->run.ground[c]);
     }
+    if (*scene->run.environment)
+        TRY(environment_read(&environment, scene->run.environment, true, error));
     const LightReferenceScene traced = {.items = items,
                                         .item_count = scene->section_count,
                                         .view = &stage->view,
                                         .lights = lights,
                                         .light_count = scene->light_count,
                                         .sky = around[0],
-                                        .ground = around[1]};
-    return light_reference_draw(&stage->image, &traced, orders, paths, 1, error);
+                                        .ground = around[1],
+                                        .environment = environment.parts ? &environment : NULL,
+                                        .axes = camera_environment(scene, 0),
+                                        .strength = scene->run.environment_strength};
+    Result result = light_reference_draw(image, &traced, orders, paths, 1, error);
+    environment_destroy(&environment);
+    return result;
 }

@@ -4,8 +4,13 @@
 
 #include "bench/light_stage.h"
 
-// Draws the stage's hair at rest into its image. `orders`: the most fibres that light meets;
-// `paths`: for each pixel. RESULT_USAGE for a scene with a mesh, an environment, a light that is
-// not directional and sharp, or fibres that differ, move or have other than Marschner's shading
-// with scales that are not tilted.
-Result light_traced_draw(LightStage *stage, int orders, int paths, Error *error);
+enum {
+    TRACED_PATHS = 8,   // for each pixel and image of --frames
+    TRACED_ORDERS = 64, // stands for all
+};
+
+// Draws the stage's hair at rest into an image (light_reference.h) of the stage's size. `orders`:
+// the most fibres that light meets; `paths`: for each pixel. RESULT_USAGE for a scene with a mesh,
+// or with fibres that differ, move or have other than Marschner's shading with scales that are not
+// tilted.
+Result light_traced_draw(LightStage *stage, Image *image, int orders, int paths, Error *error);

@@ -391,6 +391,9 @@ static const struct {
     {"light", light_run,
      "light in hair compared with a path tracer, for each method of computing it: --way, --case, "
      "--picture"},
+    {"trace", trace_run,
+     "makes a path-traced case of each scene NAME.json: writes NAME.csv beside it; 8 paths a pixel "
+     "for each of --frames"},
     {"groom", groom_run,
      "how the hair of files moves at rest and when the head shakes: --mesh, --algo, --rates, "
      "--strands; parts: rest, shake, speed"},

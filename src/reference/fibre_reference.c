@@ -95,6 +95,17 @@ void fibre_reference_density(const FibreReference *fibre, const FibreBeams *beam
     }
 }
 
+double fibre_reference_chance(const FibreBeams *beams, const double weight[3],
+                              const double density[3])
+{
+    double here = 0, all = 0;
+    for (int c = 0; c < 3; ++c) {
+        here += weight[c] * density[c];
+        for (int p = 0; p < FIBRE_BEAMS; ++p) all += weight[c] * beams->share[p][c];
+    }
+    return here / all;
+}
+
 static double draw_gauss(Random *random)
 {
     double radius = sqrt(-2 * log(1 - random_real(random)));

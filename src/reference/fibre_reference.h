@@ -34,6 +34,11 @@ FibreBeams fibre_reference_beams(const FibreReference *fibre, double sine, doubl
 void fibre_reference_density(const FibreReference *fibre, const FibreBeams *beams, double sine,
                              double azimuth, double density[3]);
 
+// The density (1/sr) with which fibre_reference_draw draws a direction whose density for each
+// channel is `density`.
+double fibre_reference_chance(const FibreBeams *beams, const double weight[3],
+                              const double density[3]);
+
 // Chooses a beam in proportion to its shares times `weight`, and a direction of it, from which the
 // light has come. Multiplies `weight` by the share over the probability of the choice.
 void fibre_reference_draw(const FibreReference *fibre, const FibreBeams *beams, Random *random,

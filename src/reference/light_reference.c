@@ -53,6 +53,9 @@ typedef struct Paths {
     int cells[3];
     uint32_t *first,
         *of_cell; // of_cell[first[c] .. first[c + 1] - 1]: cylinders near cell c, owned
+
+    // Sums of the environment's mean radiance times solid angle, up to each pixel and over all.
+    double *around, all_around; // `around`: owned
 } Paths;
 
 // The uniform Catmull-Rom curve; at an end the missing vertex is mirrored.
@@ -215,12 +218,13 @@ static bool clip_ray(const Paths *paths, const Ray *ray, double *begin, double *
     return *begin < *end;
 }
 
-// Follows the ray from cell to cell to the nearest cylinder. `any`: to any cylinder.
-static bool follow(const Paths *paths, const Ray *ray, bool any, Hit *hit)
+// Follows the ray from cell to cell to the nearest cylinder within `reach` (m). `any`: to any
+// cylinder.
+static bool follow(const Paths *paths, const Ray *ray, double reach, bool any, Hit *hit)
 {
     double begin, end, next[3], step[3];
     int cell[3];
-    *hit = (Hit){.distance = HUGE_VAL};
+    *hit = (Hit){.distance = reach};
     if (!clip_ray(paths, ray, &begin, &end)) return false;
     for (int k = 0; k < 3; ++k) {
         double way = ray->way[k], x = ray->from[k] + begin * way;
@@ -265,37 +269,216 @@ static Frame find_frame(const Cylinder *cylinder, const double out[3], double *s
     return frame;
 }
 
-// Adds the light that the sources send to this place and the fibre sends on.
-static void add_lights(const Paths *paths, const Ray *leaving, const Frame *frame,
-                       const FibreReference *fibre, const FibreBeams *beams, const double weight[3],
-                       double light[3])
+// A place on a fibre's axis that a path has met.
+typedef struct Place {
+    const FibreReference *fibre;
+    FibreBeams beams;
+    Frame frame;
+    Ray leaving; // from there; its `way` is still to be set
+} Place;
+
+static void find_density(const Place *place, const double way[3], double density[3])
+{
+    double at[3];
+    for (int k = 0; k < 3; ++k) at[k] = dot(way, place->frame.axis[k]);
+    fibre_reference_density(place->fibre, &place->beams, at[0], atan2(at[2], at[1]), density);
+}
+
+// Whether no hair lies within `reach` (m) along `way`.
+static bool is_open(const Paths *paths, const Place *place, const double way[3], double reach)
+{
+    Ray ray = place->leaving;
+    Hit hit;
+    memcpy(ray.way, way, sizeof ray.way);
+    return !follow(paths, &ray, reach, true, &hit);
+}
+
+// --- Lights.
+
+// A light as a point sees it: a disc of even radiance.
+typedef struct Disc {
+    double way[3], distance; // unit, to its middle; m
+    double cosine;           // of its angular radius; 1: it is a point
+    double share;            // of the light's brightness that arrives without hair
+} Disc;
+
+static double spot_share(const Light *light, const double to_light[3])
+{
+    double inner = cos((double)light->inner_deg * M_PI / 180),
+           outer = cos((double)light->outer_deg * M_PI / 180), cosine = 0;
+    for (int k = 0; k < 3; ++k) cosine -= (double)light->direction[k] * to_light[k];
+    double inside = fmax(0, fmin((cosine - outer) / (inner - outer), 1));
+    return inside * inside;
+}
+
+static Disc find_disc(const Light *light, const double from[3])
+{
+    bool far = light->kind == LIGHT_DIRECTIONAL;
+    double tangent = tan((double)light->radius * M_PI / 180);
+    Disc disc = {.distance = HUGE_VAL, .share = 1};
+    for (int k = 0; k < 3; ++k)
+        disc.way[k] = far ? (double)light->direction[k] : (double)light->position[k] - from[k];
+    if (!far) {
+        disc.distance = sqrt(dot(disc.way, disc.way));
+        tangent = (double)light->radius / disc.distance;
+        disc.share = pow((double)light->distance / disc.distance, 2);
+    }
+    make_unit(disc.way);
+    if (light->kind == LIGHT_SPOT) disc.share *= spot_share(light, disc.way);
+    disc.cosine = 1 / sqrt(1 + tangent * tangent);
+    return disc;
+}
+
+// A direction that is evenly distributed over the disc.
+static void draw_way(const Disc *disc, Random *random, double way[3])
+{
+    memcpy(way, disc->way, sizeof disc->way);
+    if (disc->cosine == 1) return;
+    const double *d = disc->way, other[3] = {fabs(d[0]) < 0.5, fabs(d[0]) >= 0.5, 0};
+    double w = 1 - random_real(random) * (1 - disc->cosine), off = sqrt(1 - w * w),
+           turn = 2 * M_PI * random_real(random), side[3], up[3];
+    cross(d, other, side);
+    make_unit(side);
+    cross(d, side, up);
+    for (int k = 0; k < 3; ++k) way[k] = w * d[k] + off * (cos(turn) * side[k] + sin(turn) * up[k]);
+}
+
+// Adds the light that the lights send to this place and the fibre sends on. A matt white surface
+// which faces a disc of the radiance L and the angular radius a shows L sin^2(a). So a light that
+// it shows as 1 has L = 1 / sin^2(a), and L times the solid angle, 2 pi (1 - cos(a)), is 2 pi / (1
+// + cos(a)).
+static void add_lights(const Paths *paths, const Place *place, const double weight[3],
+                       Random *random, double light[3])
 {
     const LightReferenceScene *scene = paths->scene;
     for (uint32_t l = 0; l < scene->light_count; ++l) {
         const Light *lamp = &scene->lights[l];
-        Ray ray = *leaving;
-        Hit hit;
-        double density[3], at[3];
-        for (int k = 0; k < 3; ++k) ray.way[k] = (double)lamp->direction[k];
-        make_unit(ray.way);
-        if (follow(paths, &ray, true, &hit)) continue;
-        for (int k = 0; k < 3; ++k) at[k] = dot(ray.way, frame->axis[k]);
-        fibre_reference_density(fibre, beams, at[0], atan2(at[2], at[1]), density);
-        // A light of 1 shows a matt white surface as 1, so its irradiance is pi.
+        const Disc disc = find_disc(lamp, place->leaving.from);
+        double density[3], way[3];
+        draw_way(&disc, random, way);
+        if (disc.share == 0 || !is_open(paths, place, way, disc.distance)) continue;
+        find_density(place, way, density);
         for (int c = 0; c < 3; ++c)
-            light[c] +=
-                M_PI * (double)lamp->intensity * (double)lamp->color[c] * weight[c] * density[c];
+            light[c] += 2 * M_PI / (1 + disc.cosine) * disc.share * (double)lamp->intensity *
+                        (double)lamp->color[c] * weight[c] * density[c];
     }
 }
 
-static void add_around(const LightReferenceScene *scene, const double way[3],
-                       const double weight[3], double light[3])
+// --- The environment. Its light is found in two ways: directions are drawn in proportion to its
+// radiance, and paths that leave the hair go to it. Each direction counts in both, in proportion to
+// its chances (the balance heuristic of Veach and Guibas, SIGGRAPH 1995).
+
+// The height (-1 .. 1) of the upper edge of a row of the image.
+static double edge_height(const Image *image, int row)
 {
+    return cos(M_PI * row / image->height);
+}
+
+// The radiance of a pixel.
+static void find_pixel_light(const LightReferenceScene *scene, size_t pixel, double light[3])
+{
+    const Image *image = &scene->environment->image;
+    const float *rgb = (const float *)(const void *)image->pixels + pixel * (size_t)image->channels;
+    for (int c = 0; c < 3; ++c) light[c] = (double)scene->strength * fmax((double)rgb[c], 0);
+}
+
+static double mean_of(const double light[3])
+{
+    return (light[0] + light[1] + light[2]) / 3;
+}
+
+static bool sum_environment(Paths *paths)
+{
+    if (!paths->scene->environment) return true;
+    const Image *image = &paths->scene->environment->image;
+    size_t count = (size_t)image->width * (size_t)image->height;
+    double sum = 0;
+    paths->around = malloc(count * sizeof *paths->around);
+    if (!paths->around) return false;
+    for (size_t i = 0; i < count; ++i) {
+        int row = (int)(i / (size_t)image->width);
+        double light[3];
+        find_pixel_light(paths->scene, i, light);
+        sum += mean_of(light) * 2 * M_PI / image->width *
+               (edge_height(image, row) - edge_height(image, row + 1));
+        paths->around[i] = sum;
+    }
+    paths->all_around = sum;
+    return true;
+}
+
+// The density (1/sr) with which a direction of this radiance is drawn.
+static double chance_of(const Paths *paths, const double light[3])
+{
+    return paths->all_around > 0 ? mean_of(light) / paths->all_around : 0;
+}
+
+// Draws a direction, and finds its radiance.
+static void draw_around(const Paths *paths, Random *random, double way[3], double light[3])
+{
+    const Image *image = &paths->scene->environment->image;
+    double at = random_real(random) * paths->all_around;
+    size_t first = 0, last = (size_t)image->width * (size_t)image->height - 1;
+    while (first < last) {
+        size_t middle = first + (last - first) / 2;
+        if (paths->around[middle] > at)
+            last = middle;
+        else
+            first = middle + 1;
+    }
+    int row = (int)(first / (size_t)image->width);
+    double column = (double)(first % (size_t)image->width) + random_real(random),
+           down = random_real(random), above = edge_height(image, row);
+    float drawn[3];
+    environment_way(&paths->scene->axes, 2 * M_PI * (column / image->width - 0.5),
+                    above + down * (edge_height(image, row + 1) - above), drawn);
+    for (int k = 0; k < 3; ++k) way[k] = (double)drawn[k];
+    find_pixel_light(paths->scene, first, light);
+}
+
+// Adds the environment's light from one drawn direction.
+static void add_environment(const Paths *paths, const Place *place, const double weight[3],
+                            Random *random, double light[3])
+{
+    double way[3], density[3], radiance[3];
+    if (!(paths->all_around > 0)) return;
+    draw_around(paths, random, way, radiance);
+    if (!is_open(paths, place, way, HUGE_VAL)) return;
+    find_density(place, way, density);
+    double chances =
+        chance_of(paths, radiance) + fibre_reference_chance(&place->beams, weight, density);
+    for (int c = 0; c < 3; ++c) light[c] += weight[c] * density[c] * radiance[c] / chances;
+}
+
+// The radiance from all around.
+static void look_around(const LightReferenceScene *scene, const double way[3], double light[3])
+{
+    const float to[3] = {(float)way[0], (float)way[1], (float)way[2]};
+    float place[2];
     for (int c = 0; c < 3; ++c) {
         double sky = (double)scene->sky[c], ground = (double)scene->ground[c];
-        light[c] += weight[c] * (ground + (0.5 + 0.5 * way[1]) * (sky - ground));
+        light[c] = ground + (0.5 + 0.5 * way[1]) * (sky - ground);
     }
+    if (!scene->environment) return;
+    const Image *image = &scene->environment->image;
+    environment_place(scene->environment, &scene->axes, to, place);
+    size_t column = (size_t)fmin((double)place[0], image->width - 1),
+           row = (size_t)fmin((double)place[1], image->height - 1);
+    find_pixel_light(scene, row * (size_t)image->width + column, light);
 }
+
+// Adds the light that a path meets which leaves the hair. `chance`: the density (1/sr) with which
+// its direction was drawn.
+static void add_around(const Paths *paths, const double way[3], const double weight[3],
+                       double chance, double light[3])
+{
+    double radiance[3];
+    look_around(paths->scene, way, radiance);
+    double share = paths->scene->environment ? chance / (chance + chance_of(paths, radiance)) : 1;
+    for (int c = 0; c < 3; ++c) light[c] += share * weight[c] * radiance[c];
+}
+
+// --- Whole paths.
 
 // Ends faint paths at random, and makes up for those that it ends in those that it does not.
 static bool goes_on(double weight[3], Random *random)
@@ -308,36 +491,55 @@ static bool goes_on(double weight[3], Random *random)
     return true;
 }
 
+// Makes the fibre's place where the ray has hit it.
+static Place find_place(const Paths *paths, const Ray *ray, const Hit *hit)
+{
+    Place place = {.fibre = &paths->scene->items[hit->cylinder->item].fibre,
+                   .leaving.own = hit->cylinder};
+    double out[3] = {-ray->way[0], -ray->way[1], -ray->way[2]}, sine, on = 0;
+    place.frame = find_frame(hit->cylinder, out, &sine);
+    place.beams = fibre_reference_beams(place.fibre, sine, hit->offset);
+    for (int k = 0; k < 3; ++k)
+        on += (ray->from[k] + hit->distance * ray->way[k] - hit->cylinder->from[k]) *
+              place.frame.axis[0][k];
+    memcpy(place.leaving.from, hit->cylinder->from, sizeof place.leaving.from);
+    add_scaled(place.leaving.from, place.frame.axis[0], on);
+    return place;
+}
+
+// Draws where a path goes on. With an environment, returns the density (1/sr) with which it was
+// drawn.
+static double draw_leaving(const Paths *paths, Place *place, Random *random, double weight[3])
+{
+    const double before[3] = {weight[0], weight[1], weight[2]};
+    double sine, azimuth, density[3], *way = place->leaving.way;
+    fibre_reference_draw(place->fibre, &place->beams, random, weight, &sine, &azimuth);
+    double across = sqrt(fmax(1 - sine * sine, 0)),
+           at[3] = {sine, across * cos(azimuth), across * sin(azimuth)};
+    for (int k = 0; k < 3; ++k) add_scaled(way, place->frame.axis[k], at[k]);
+    make_unit(way);
+    if (!paths->scene->environment) return 0;
+    fibre_reference_density(place->fibre, &place->beams, sine, azimuth, density);
+    return fibre_reference_chance(&place->beams, before, density);
+}
+
 // Follows one path from the eye; returns whether it met hair.
 static bool follow_path(const Paths *paths, Ray ray, Random *random, double light[3])
 {
-    double weight[3] = {1, 1, 1};
+    double weight[3] = {1, 1, 1}, chance = 0;
     for (int order = 0;; ++order) {
         Hit hit;
-        if (!follow(paths, &ray, false, &hit)) {
-            if (order > 0) add_around(paths->scene, ray.way, weight, light);
+        if (!follow(paths, &ray, HUGE_VAL, false, &hit)) {
+            if (order > 0) add_around(paths, ray.way, weight, chance, light);
             return order > 0;
         }
         if (order == paths->orders) return true;
-        const FibreReference *fibre = &paths->scene->items[hit.cylinder->item].fibre;
-        double out[3] = {-ray.way[0], -ray.way[1], -ray.way[2]}, sine, azimuth;
-        Frame frame = find_frame(hit.cylinder, out, &sine);
-        FibreBeams beams = fibre_reference_beams(fibre, sine, hit.offset);
-        double on = 0;
-        for (int k = 0; k < 3; ++k)
-            on += (ray.from[k] + hit.distance * ray.way[k] - hit.cylinder->from[k]) *
-                  frame.axis[0][k];
-        memcpy(ray.from, hit.cylinder->from, sizeof ray.from);
-        add_scaled(ray.from, frame.axis[0], on);
-        ray.own = hit.cylinder;
-        add_lights(paths, &ray, &frame, fibre, &beams, weight, light);
-        fibre_reference_draw(fibre, &beams, random, weight, &sine, &azimuth);
+        Place place = find_place(paths, &ray, &hit);
+        add_lights(paths, &place, weight, random, light);
+        add_environment(paths, &place, weight, random, light);
+        chance = draw_leaving(paths, &place, random, weight);
         if (!goes_on(weight, random)) return true;
-        double across = sqrt(fmax(1 - sine * sine, 0)),
-               at[3] = {sine, across * cos(azimuth), across * sin(azimuth)};
-        memset(ray.way, 0, sizeof ray.way);
-        for (int k = 0; k < 3; ++k) add_scaled(ray.way, frame.axis[k], at[k]);
-        make_unit(ray.way);
+        ray = place.leaving;
     }
 }
 
@@ -383,16 +585,13 @@ Result light_reference_draw(Image *image, const LightReferenceScene *scene, int 
                             uint64_t seed, Error *error)
 {
     Paths paths = {.scene = scene, .image = image, .orders = orders, .paths = count, .seed = seed};
-    for (uint32_t l = 0; l < scene->light_count; ++l)
-        if (scene->lights[l].kind != LIGHT_DIRECTIONAL || scene->lights[l].radius > 0)
-            return error_set(error, RESULT_USAGE,
-                             "light %u: has a place or a radius: expected a directional light", l);
-    bool good = make_cylinders(&paths) && make_cells(&paths);
+    bool good = make_cylinders(&paths) && make_cells(&paths) && sum_environment(&paths);
     paths.parts = parallel_threads();
     if (good) parallel_run(paths.parts, draw_rows, &paths);
     free(paths.cylinders);
     free(paths.first);
     free(paths.of_cell);
+    free(paths.around);
     if (!good) return error_set(error, RESULT_FAILED, "no memory for %u cylinders", paths.count);
     return interrupt_requested() ? error_set(error, RESULT_INTERRUPTED, "interrupted") : RESULT_OK;
 }

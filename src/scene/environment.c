@@ -31,12 +31,17 @@ static double height(double share)
     return -0.5 * cos(M_PI * share);
 }
 
+static void find_way(double turn, double up, float way[3])
+{
+    double wide = sqrt(fmax(1 - up * up, 0));
+    way[0] = (float)(wide * sin(turn)), way[1] = (float)up, way[2] = (float)(-wide * cos(turn));
+}
+
 static void find_part(EnvironmentPart *part, const Image *image, int row, int column)
 {
     double top = (double)row / ROWS, bottom = (double)(row + 1) / ROWS,
            left = (double)column / COLUMNS, right = (double)(column + 1) / COLUMNS;
-    double sum[3] = {0}, all = 0, up = -(height(top) + height(bottom)), wide = sqrt(1 - up * up),
-           turn = 2 * M_PI * (0.5 * (left + right) - 0.5);
+    double sum[3] = {0}, all = 0;
     for (int y = (int)(top * image->height); y < (int)ceil(bottom * image->height); ++y) {
         double tall = overlap(y, image->height, top, bottom, height);
         for (int x = (int)(left * image->width); x < (int)ceil(right * image->width); ++x) {
@@ -48,9 +53,8 @@ static void find_part(EnvironmentPart *part, const Image *image, int row, int co
             all += area;
         }
     }
-    *part =
-        (EnvironmentPart){.way = {(float)(wide * sin(turn)), (float)up, (float)(-wide * cos(turn))},
-                          .share = (float)((height(bottom) - height(top)) / COLUMNS)};
+    *part = (EnvironmentPart){.share = (float)((height(bottom) - height(top)) / COLUMNS)};
+    find_way(2 * M_PI * (0.5 * (left + right) - 0.5), -(height(top) + height(bottom)), part->way);
     for (int c = 0; c < 3; ++c) part->light[c] = (float)(sum[c] / all);
 }
 
@@ -95,11 +99,28 @@ void environment_destroy(Environment *environment)
 
 // --- To the scene.
 
-static void to_world(const EnvironmentPart *part, const EnvironmentAxes *axes, float way[3])
+static void to_world(const float own[3], const EnvironmentAxes *axes, float way[3])
 {
     for (int k = 0; k < 3; ++k)
-        way[k] = part->way[0] * axes->axis[0][k] + part->way[1] * axes->axis[1][k] +
-                 part->way[2] * axes->axis[2][k];
+        way[k] = own[0] * axes->axis[0][k] + own[1] * axes->axis[1][k] + own[2] * axes->axis[2][k];
+}
+
+void environment_way(const EnvironmentAxes *axes, double turn, double up, float way[3])
+{
+    float own[3];
+    find_way(turn, up, own);
+    to_world(own, axes, way);
+}
+
+void environment_place(const Environment *environment, const EnvironmentAxes *axes,
+                       const float way[3], float place[2])
+{
+    float own[3];
+    for (int k = 0; k < 3; ++k)
+        own[k] = axes->axis[k][0] * way[0] + axes->axis[k][1] * way[1] + axes->axis[k][2] * way[2];
+    float turn = atan2f(own[0], -own[2]), down = atan2f(hypotf(own[0], own[2]), own[1]);
+    place[0] = (turn / (2 * (float)M_PI) + 0.5f) * (float)environment->image.width;
+    place[1] = down / (float)M_PI * (float)environment->image.height;
 }
 
 // The pixel before `at` (px from the middle of the first pixel) and the weight of the next.
@@ -115,13 +136,10 @@ void environment_look(const Environment *environment, const EnvironmentAxes *axe
 {
     const Image *image = &environment->image;
     const float *pixels = (const float *)(const void *)image->pixels;
-    float own[3], weight[2];
-    for (int k = 0; k < 3; ++k)
-        own[k] = axes->axis[k][0] * way[0] + axes->axis[k][1] * way[1] + axes->axis[k][2] * way[2];
-    float turn = atan2f(own[0], -own[2]), down = atan2f(hypotf(own[0], own[2]), own[1]);
-    int width = image->width, last = image->height - 1,
-        x = find_pixel((turn / (2 * (float)M_PI) + 0.5f) * (float)width - 0.5f, &weight[0]),
-        y = find_pixel(down / (float)M_PI * (float)image->height - 0.5f, &weight[1]);
+    float place[2], weight[2];
+    environment_place(environment, axes, way, place);
+    int width = image->width, last = image->height - 1, x = find_pixel(place[0] - 0.5f, &weight[0]),
+        y = find_pixel(place[1] - 0.5f, &weight[1]);
     for (int c = 0; c < 3; ++c) light[c] = 0;
     for (int q = 0; q < 4; ++q) {
         int column = (x + (q & 1) + width) % width, row = y + (q >> 1);
@@ -157,7 +175,7 @@ void environment_around(const Environment *environment, const EnvironmentAxes *a
         const EnvironmentPart *part = &environment->parts[i];
         float way[3];
         double basis[N];
-        to_world(part, axes, way);
+        to_world(part->way, axes, way);
         find_basis(way, basis);
         for (int t = 0; t < N; ++t) {
             double weight = (double)part->share * basis[t];
@@ -184,7 +202,7 @@ void environment_spread(const Environment *environment, const EnvironmentAxes *a
     for (int i = 0; i < PARTS; ++i) {
         const EnvironmentPart *part = &environment->parts[i];
         float at[3], weights = 0;
-        to_world(part, axes, at);
+        to_world(part->way, axes, at);
         for (int d = 0; d < count; ++d) {
             float near = way[d][0] * at[0] + way[d][1] * at[1] + way[d][2] * at[2] - REACH;
             weight[d] = near > 0 ? near * near : 0;

@@ -38,6 +38,15 @@ typedef struct EnvironmentAxes {
     float axis[3][3];
 } EnvironmentAxes;
 
+// The place in the image, which must be kept, of the direction `way` (world, of any length but 0):
+// px from the left and from the top.
+void environment_place(const Environment *environment, const EnvironmentAxes *axes,
+                       const float way[3], float place[2]);
+
+// The unit direction (world) of a longitude and a height. `turn`: rad from the centre of the image
+// to the right; `up`: -1 .. 1.
+void environment_way(const EnvironmentAxes *axes, double turn, double up, float way[3]);
+
 // The radiance from the direction `way` (world, of any length but 0), linear RGB: interpolated
 // between pixels of the image, which must be kept. Negative light counts as 0.
 void environment_look(const Environment *environment, const EnvironmentAxes *axes,

@@ -61,7 +61,7 @@ static void require_unseen(const Image *light, const Image *coverage, const char
     int blocks = 0;
     for (int row = 0; row < HEIGHT / LIGHT_BLOCK_PX; ++row)
         for (int column = 0; column < WIDTH / LIGHT_BLOCK_PX; ++column) {
-            double lit[3], covered[3];
+            double lit[4], covered[4];
             light_case_block(light, column, row, lit);
             light_case_block(coverage, column, row, covered);
             if (!(covered[0] > 0)) continue;

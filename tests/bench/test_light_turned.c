@@ -82,7 +82,7 @@ static double draw_mean(const char *scene, const char *scatter)
     NEEDED(light_stage_draw(&stage, true, error));
     for (int row = 0; row < HEIGHT / LIGHT_BLOCK_PX; ++row)
         for (int column = 0; column < WIDTH / LIGHT_BLOCK_PX; ++column) {
-            double mean[3];
+            double mean[4];
             light_case_block(&stage.image, column, row, mean);
             sum += mean[0] + mean[1] + mean[2];
         }
