@@ -41,6 +41,11 @@ for channel in r g b; do
     same "$(field "$work/blond.csv" mean_$channel | head -2 | awk '{ good += $1 > 0.85 && $1 < 1.15 } END { print good }')" 2 "means of $channel"
 done
 
+# Tables of 192 paths a pixel by tractrix-bench trace.
+claim "wide lights and environments hold the bounds of all light"
+run 0 light --reference tests/data/light_wide --case curls_blond_front5,curls_brown_back20,curls_blond_dusk,curls_black_dusk --way grid --frames 1 --csv "$work/wide.csv"
+same "$(field "$work/wide.csv" verdict | grep -c holds)" 4 "rows of cases that hold"
+
 # With 8 cells the means are off by 2.5 %, equally with both. Measured differences: up to 0.0027.
 claim "both rasterisers show the same light and cover the same"
 for raster in quads blocks; do
@@ -80,6 +85,22 @@ for other in "color_variation 0.1" "warmth_variation 0.1" "followers 2" "algo hy
 done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/traced/triangle.obj"
 run 2 light --reference "$work/traced" --case one --way traced --frames 1 --render="--mesh $work/traced/triangle.obj"; says "expected hair only"
+
+claim "trace writes the table of a scene, which is then a case: that of a wide light in an environment, too"
+mkdir "$work/trace"
+cp "$work/own/hair.tfx" tests/data/light_wide/dusk.pfm "$work/trace/"
+sed 's|"lights": .*|"environment": "dusk.pfm", "lights": [{"direction": [0, -1, 0], "radius": 20}]}|; s/"sky": "#808080", //' "$work/traced/one.json" >"$work/trace/one.json"
+run 0 trace "$work/trace/one.json" --frames 1; says "one.csv: 8 paths a pixel"
+cp "$work/trace/one.csv" "$work/first_table.csv"
+run 0 trace "$work/trace/one.json" --frames 1
+same "$(cmp "$work/trace/one.csv" "$work/first_table.csv" && echo same)" same "the same table again"
+# The same number of paths has the same noise; the table has four digits.
+run 0 light --reference "$work/trace" --way "traced one,traced" --frames 1 --csv "$work/again.csv"
+same "$(field "$work/again.csv" rel_g | awk '{ good += $1 < 1e-3 } END { print good }')" 4 "images that are the table's"
+run 2 trace; says "trace: expected scene files"
+run 2 trace "$work/trace/hair.tfx"; says "expected a scene file NAME.json"
+sed 's/"size": \[16, 16\]/"size": [16, 20]/' "$work/trace/one.json" >"$work/trace/odd.json"
+run 3 trace "$work/trace/odd.json"; says "the image has 16x20 pixels: expected multiples of 8"
 
 claim "an image that is the tracer's has a mean of 1 and a rel of 0"
 # The mean of the first run's image over the table gives the table's values for the image. A single block has no other
