@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bytes that are read back late are those of the moment of the request, complete and at their
-// places, even if the buffer is reused.
+// places, even if the buffer is reused. Buffers grow only.
 #include "gpu/gpu_buffer.h"
 #include "gpu/gpu_dispatch.h"
 #include "gpu/late_read.h"
@@ -186,9 +186,32 @@ static void nothing_that_was_sent_is_an_error_with_its_name(void **state)
     assert_true(read.buffer == 0 && read.room == 0);
 }
 
+// A buffer that is large enough keeps its place and its content.
+static void only_a_smaller_buffer_is_replaced(void **state)
+{
+    (void)state;
+    GpuBuffer words = make_buffer(7);
+    const GpuLimits *limits = &fixture_gpu()->limits;
+    GLuint name = words.buffer;
+    for (int64_t size = 4 * WORDS - 4; size <= 4 * WORDS; size += 4) {
+        uint32_t last = 0;
+        assert_int_equal(gpu_buffer_reserve(&words, limits, "words", size, 0, NULL), RESULT_OK);
+        assert_int_equal(words.buffer, name);
+        assert_int_equal(words.size, 4 * WORDS);
+        glBindBuffer(GL_COPY_READ_BUFFER, words.buffer);
+        glGetBufferSubData(GL_COPY_READ_BUFFER, 4 * WORDS - 4, 4, &last);
+        assert_int_equal(last, 7);
+    }
+    assert_int_equal(gpu_buffer_reserve(&words, limits, "words", 4 * WORDS + 4, 0, NULL),
+                     RESULT_OK);
+    assert_int_equal(words.size, 4 * WORDS + 4);
+    gpu_buffer_destroy(&words);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(only_a_smaller_buffer_is_replaced),
         cmocka_unit_test(what_is_written_behind_the_copy_does_not_count),
         cmocka_unit_test(several_buffers_lie_where_they_were_put),
         cmocka_unit_test(what_shaders_have_stored_arrives),

@@ -266,6 +266,26 @@ static void a_larger_error_is_lighter_in_the_heat_map(void **state)
     }
 }
 
+static void a_heat_map_has_the_colour_of_each_error(void **state)
+{
+    static float errors[W * H];
+    Image map;
+    (void)state;
+    for (int i = 0; i < W * H; ++i) errors[i] = i % 5 == 4 ? NAN : (float)i / (W * H);
+    assert_int_equal(heat_map_create(&map, errors, W, H, NULL), RESULT_OK);
+    assert_int_equal(map.width, W);
+    assert_int_equal(map.height, H);
+    assert_int_equal(map.channels, 3);
+    assert_int_equal(map.kind, IMAGE_8);
+    for (int i = 0; i < W * H; ++i) {
+        const uint8_t *pixel = map.pixels + 3 * i;
+        uint8_t rgb[3] = {pixel[0], pixel[0], pixel[0]}; // an ignored pixel is grey
+        if (!isnan(errors[i])) heat_map_color(rgb, errors[i]);
+        assert_memory_equal(pixel, rgb, 3);
+    }
+    image_destroy(&map);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -278,6 +298,7 @@ int main(void)
         cmocka_unit_test(pictures_of_every_small_size_can_be_compared),
         cmocka_unit_test(what_is_seen_depends_on_the_distance),
         cmocka_unit_test(a_larger_error_is_lighter_in_the_heat_map),
+        cmocka_unit_test(a_heat_map_has_the_colour_of_each_error),
         cmocka_unit_test(a_rounded_map_has_few_steps_and_hides_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -150,6 +150,11 @@ static void reads_what_is_there(void **state)
                     TRACTRIX_BAD_INPUT, "assets/none.tfx: ");
     library_refused(tractrix_scene_read(&scene, "assets", &library_error), TRACTRIX_BAD_INPUT,
                     "assets");
+    library_refused(tractrix_scene_parse(&scene, NULL, NULL, &library_error), TRACTRIX_USAGE,
+                    "json: got NULL");
+    assert_null(scene);
+    library_refused(tractrix_scene_parse(NULL, "{}", NULL, &library_error), TRACTRIX_USAGE,
+                    "scene: got NULL");
     library_refused(tractrix_scene_parse(&scene, "{", NULL, &library_error), TRACTRIX_BAD_INPUT,
                     "scene:1:");
     library_refused(tractrix_scene_parse(&scene, "{\"sections\": [{\"file\": \"none.tfx\"}]}",
