@@ -1165,7 +1165,8 @@ def import_hair(context, path: str, scale: Optional[float] = None, units: tuple 
     obj = new_curves(context, os.path.splitext(os.path.basename(path))[0], hair)
     if hair.frames is not None:
         animate(context, obj, hair)
-    say(f"{path}: {len(hair.sizes)} strands, {len(hair.points)} points, {1 if hair.frames is None else len(hair.frames)} frames")
+    frames = 1 if hair.frames is None else len(hair.frames)
+    say(f"{path}: {len(hair.sizes)} strands, {len(hair.points)} points, {frames} frame{'s' * (frames != 1)}")
 
 
 def radius_for(path: str, units: tuple, count: int) -> Optional[np.ndarray]:
@@ -1354,7 +1355,8 @@ def import_scene(context, path: str) -> None:
         if not isinstance(members, dict):
             raise ValueError("not an object")
     except (OSError, ValueError) as error:
-        raise HairError(f"{path}: {error}: expected a scene file") from None
+        reason = getattr(error, "strerror", None) or error
+        raise HairError(f"{path}: {reason}: expected a scene file") from None
     scene = context.scene
     fps, count = float(members.get("fps", 60)), int(members.get("frames", 120))
     set_rate(scene, fps)

@@ -34,5 +34,6 @@ fi
 
 claim "the command line's statuses and lines"
 hair 3 export "$work/none.abc" -o "$work/x.npz"; one_line; says "no such file"
+hair 3 import assets/fur.tfx --scene "$work/none.json" -o "$work/x.blend"; one_line; says "none.json: No such file or directory: expected a scene file"
 hair 0 import --help; says "usage: blender_hair import"
 finish

@@ -68,6 +68,7 @@ else
     export PKG_CONFIG_PATH="$root/usr/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
     # shellcheck disable=SC2046 # words
     holds cc -o "$work/first" "$work/first.c" $(pkg-config --cflags --libs tractrix)
+    holds cc -o "$work/uninstalled" "$work/first.c" -Isrc/library -L"$bin/lib" -Wl,-rpath,"$bin_here/lib" -ltractrix # in the checkout
     (cd "$work" && LD_LIBRARY_PATH="$root/usr/lib" ./first "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
     run 0 "$share/tractrix/fur.tfx" --size 160x120 -q -o "$work/rendered.png"
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
