@@ -64,22 +64,25 @@ int wide_texel(int map, vec2 place)
            left_texel(place.x, shadow_side);
 }
 
-// The same for a wide light (kernel/left.h).
-float light_through_wide(int map, vec2 place, float depth, vec4 of_light)
+// The same for a wide light (kernel/left.h). `surface`: the point lies on a mesh or a floor.
+float light_through_wide(int map, vec2 place, float depth, vec4 of_light, bool surface)
 {
     int squares = shadow_side * shadow_side;
+    int rays = surface ? LEFT_SPREAD : LEFT_RAYS;
     float reach = shadow_params.wide[map].x, front = depth, left = 0.0;
-    for (int r = 0; r < LEFT_RAYS; ++r) {
-        vec2 off = reach * max(depth, 0.0) * shadow_params.ray[r].xy;
+    for (int r = 0; r < rays; ++r) {
+        vec4 ray = surface ? shadow_params.spread[r] : shadow_params.ray[r];
+        vec2 off = reach * max(depth, 0.0) * ray.xy;
         front = min(front, texelFetch(shadow_depths, wide_texel(map, place + off)).x);
     }
     float span = depth - front;
-    for (int r = 0; r < LEFT_RAYS; ++r) {
-        vec4 ray = shadow_params.ray[r];
+    for (int r = 0; r < rays; ++r) {
+        vec4 ray = surface ? shadow_params.spread[r] : shadow_params.ray[r];
         float fibres = 0.0, share = 0.0;
         for (int slab = 0; slab < LEFT_SLABS; ++slab) {
-            int texel =
-                wide_texel(map, place + reach * left_slab_middle(slab) * span * ray.xy + ray.zw);
+            vec2 there = place + reach * left_slab_middle(slab) * span * ray.xy + ray.zw;
+            int texel = wide_texel(map, there);
+            float on = surface ? left_on_map(there.x, there.y, float(shadow_side)) : 1.0;
             float begin = texelFetch(shadow_depths, texel).x, ends[2];
             ends[0] = slab > 0 ? left_slab_end(slab - 1) : 0.0;
             ends[1] = left_slab_end(slab);
@@ -89,13 +92,13 @@ float light_through_wide(int map, vec2 place, float depth, vec4 of_light)
                 // After all layers of the maps before, those of this map.
                 int at = texel + (map * (SHADOW_LAYERS - 1) + int(which)) * squares;
                 float met = texel_depth(at, share);
-                fibres += e == 0 ? -met : met;
+                fibres += e == 0 ? -on * met : on * met;
             }
         }
         fibres -= own_layer_depth(shadow_fibre.x * of_light.w, shadow_fibre.y, share);
         left += left_of_fibres(max(fibres, 0.0));
     }
-    return left * (1.0 / float(LEFT_RAYS));
+    return left / float(rays);
 }
 #endif
 #else
@@ -210,11 +213,12 @@ float light_past_mesh(int map, vec3 x)
 
 #if SHADOW
 #if WIDE && SHADOW == 2
-#define LIGHT_THROUGH(map, place, depth, of_light)                                                 \
-    (shadow_params.wide[map].x > 0.0 ? light_through_wide(map, place, depth, of_light)             \
+#define LIGHT_THROUGH(map, place, depth, of_light, surface)                                        \
+    (shadow_params.wide[map].x > 0.0 ? light_through_wide(map, place, depth, of_light, surface)    \
                                      : light_through_hair(map, place, depth, of_light))
 #else
-#define LIGHT_THROUGH light_through_hair
+#define LIGHT_THROUGH(map, place, depth, of_light, surface)                                        \
+    light_through_hair(map, place, depth, of_light)
 #endif
 
 // The share of a map's light that hair lets through to x. It is 1 outside the map and behind a
@@ -223,7 +227,7 @@ float hair_leaves(int map, vec3 x)
 {
     CasterPlace place = caster_place(shadow_params.from_world[map], x.x, x.y, x.z);
     vec2 texel = vec2(place.u, place.v);
-    float left = LIGHT_THROUGH(map, texel, place.z, shadow_params.place[map]);
+    float left = LIGHT_THROUGH(map, texel, place.z, shadow_params.place[map], false);
     bool beside = any(lessThan(texel, vec2(0.0))) || any(greaterThan(texel, vec2(shadow_side)));
     return beside ? 1.0 : left;
 }

@@ -38,7 +38,9 @@ UNIFORM_BLOCK(ShadowParams, shadow_params, BIND_SHADOW)
     vec4
         wide[MAX_LIGHTS]; // x: how far the edge of a wide light moves what it sees across the map,
                           // in texels for each unit of depth, 0: it has no radius; y: in the mesh's
-    vec4 ray[LEFT_RAYS];  // xy: to a part of a wide light, over its radius; zw: texels, of places
+    // xy: to a part of a wide light, over its radius; zw: texels, of places
+    vec4 ray[LEFT_RAYS];
+    vec4 spread[LEFT_SPREAD]; // the same, of rays to hair from surfaces
     int maps;
     int side, mesh_side; // texels
     float fibres;        // approx: fibres per metre along the light

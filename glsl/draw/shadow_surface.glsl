@@ -26,9 +26,17 @@ void shadow_find_on(vec3 x, vec3 n)
         bool shone = facing > -SHADOW_WRAP && place.w > 0.0;
         float left = 1.0;
         vec2 texel = place.xy / place.w;
-        int turns = shone && place.z > 0.0 && shadow_covers(texel, shadow_side) ? 1 : 0;
+#if WIDE && SHADOW == 2
+        float off =
+            shadow_params.wide[map].x * max(place.z, 0.0); // rays cross the map from outside
+#else
+        const float off = 0.0;
+#endif
+        bool covers = all(greaterThanEqual(texel, vec2(-off))) &&
+                      all(lessThanEqual(texel, vec2(float(shadow_side) + off)));
+        int turns = shone && place.z > 0.0 && covers ? 1 : 0;
         for (int turn = 0; turn < turns; ++turn)
-            left = LIGHT_THROUGH(map, texel, place.z, of_light);
+            left = LIGHT_THROUGH(map, texel, place.z, of_light, true);
 #if SHADOW_BY_MESH
         vec4 mesh_place = vec4(x, 1.0) * shadow_params.mesh_from_world[map];
         turns =

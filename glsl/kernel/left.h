@@ -27,11 +27,13 @@ SHARED_FUNCTION float left_of_fibres(float fibres) { return SHARED_EXP2(-FLOAT(L
 // start is shifted by up to half a texel, so that the mean over rays is continuous. The nearer a
 // ray comes to the light, the farther it is from the point's own column of texels. Hair: the depths
 // between the first fibre and the point are divided into LEFT_SLABS slabs; in each slab, a ray
-// counts the fibres of the column that contains its middle. Mesh: in LEFT_STEPS steps, whose length
-// grows with the distance from the point, rays look for surfaces in front of them. The mean depth
-// of these surfaces determines how far apart the rays are there; then each ray is tested in
-// LEFT_TURNS rotated positions and is either blocked or not.
+// counts the fibres of the column that contains its middle. From a surface, where the edges of
+// eight shadows would show, LEFT_SPREAD rays go, and they meet nothing beyond the map. Mesh: in
+// LEFT_STEPS steps, whose length grows with the distance from the point, rays look for surfaces in
+// front of them. The mean depth of these surfaces determines how far apart the rays are there; then
+// each ray is tested in LEFT_TURNS rotated positions and is either blocked or not.
 #define LEFT_RAYS     8
+#define LEFT_SPREAD   24
 #define LEFT_SLABS    4
 #define LEFT_STEPS    6
 #define LEFT_TURNS    3 // rotations by 24 degrees, so that shadows of mesh edges have no steps
@@ -69,6 +71,12 @@ SHARED_FUNCTION bool left_in_way(int i, float gap, float depth, float off)
 SHARED_FUNCTION float left_limit(float depth, float nearest)
 {
     return SHARED_MIN(0.5f * (depth + nearest), 1.0f);
+}
+
+// 1 for a position in a map of `side` texels, else 0.
+SHARED_FUNCTION float left_on_map(float u, float v, float side)
+{
+    return SHARED_MIN(SHARED_MIN(u, v), SHARED_MIN(side - u, side - v)) >= 0.0f ? 1.0f : 0.0f;
 }
 
 // The texel along one axis at a position in a map of `side` texels.

@@ -206,6 +206,20 @@ static void find_rays(ShadowParams *params)
     }
 }
 
+// Rays that are spread evenly over a disc by the golden angle (Vogel 1979, A better way to
+// construct the sunflower head), and over a texel.
+static void find_spread(ShadowParams *params)
+{
+    const double golden = M_PI * (3 - sqrt(5));
+    for (int i = 0; i < LEFT_SPREAD; ++i) {
+        double off = sqrt((i + 0.5) / LEFT_SPREAD);
+        params->spread[i][0] = (float)(off * cos(golden * i));
+        params->spread[i][1] = (float)(off * sin(golden * i));
+        params->spread[i][2] = (float)((i % 4 + 0.5) / 4 - 0.5);
+        params->spread[i][3] = (float)((i * 7 % LEFT_SPREAD + 0.5) / LEFT_SPREAD - 0.5);
+    }
+}
+
 static void place_hair(ShadowFrames *frames, int map, int i, const double box[6])
 {
     const LightView *view = &frames->views[i];
@@ -236,6 +250,7 @@ void shadow_frames_place(ShadowFrames *frames, int side, float spacing, double (
     params->mesh_side = SHADOW_MESH_SIDE;
     find_mean_fibre(frames, spacing, params);
     find_rays(params);
+    find_spread(params);
     for (int i = 0; i < frames->count; ++i) {
         double *box = boxes[i];
         if (!(box[0] <= box[3])) {

@@ -113,8 +113,8 @@ SIMD_INLINE void find_left(const LaneShadow *shadow, const GridStrands *strands,
     }
     for (int map = 0; map < shadow->params.maps; ++map) {
         ShadowLook look;
-        shadow_look(shadow, map, (const float(*)[W])x, &look);
-        shadow_look_hair(shadow, map, &look, radius, opacity, left[map]);
+        shadow_look(shadow, map, (const float(*)[W])x, 0, &look);
+        shadow_look_hair(shadow, map, &look, false, radius, opacity, left[map]);
     }
 }
 

@@ -59,19 +59,21 @@ Result lane_shadow_draw(LaneShadow *shadow, const LaneShadowScene *scene, Error 
 
 enum { SHADOW_LOOK = STRAND_TILE }; // points
 
-// Positions of points in a map of hair; `inside`: inside the map and in front of the light.
+// Positions of points in a map of hair; `inside`: rays to the light cross the map, in front of it.
 typedef struct ShadowLook {
     float u[SHADOW_LOOK], v[SHADOW_LOOK], z[SHADOW_LOOK], inside[SHADOW_LOOK];
 } ShadowLook;
 
+// `reach`: how far a light's edge moves what it sees, in texels for each unit of depth.
 SIMD_INLINE void shadow_look(const LaneShadow *shadow, int map, const float x[3][SHADOW_LOOK],
-                             ShadowLook *look)
+                             float reach, ShadowLook *look)
 {
     const float(*rows)[4] = (const float(*)[4])shadow->params.from_world[map];
     float most = (float)shadow->params.side;
     for (int k = 0; k < SHADOW_LOOK; ++k) {
         CasterPlace p = caster_place(rows, x[0][k], x[1][k], x[2][k]);
-        bool inside = (p.u >= 0) & (p.v >= 0) & (p.u <= most) & (p.v <= most);
+        float off = reach * simd_positive(p.z), end = most + off;
+        bool inside = (p.u >= -off) & (p.v >= -off) & (p.u <= end) & (p.v <= end);
         look->u[k] = p.u, look->v[k] = p.v, look->z[k] = p.z;
         look->inside[k] = inside ? 1.f : 0.f;
     }
@@ -148,37 +150,40 @@ SIMD_INLINE void shadow_look_approx(const LaneShadow *shadow, int map, const Sha
     }
 }
 
-// The same of a wide light (kernel/left.h).
+// The same of a wide light (kernel/left.h). `surface`: the points lie on a mesh or a floor.
 SIMD_INLINE void shadow_look_wide(const LaneShadow *shadow, int map, const ShadowLook *look,
-                                  const float width[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
-                                  float left[SHADOW_LOOK])
+                                  bool surface, const float width[SHADOW_LOOK],
+                                  const float opacity[SHADOW_LOOK], float left[SHADOW_LOOK])
 {
     enum { N = SHADOW_LOOK, S = SHADOW_MAP_TILE };
-    int side = shadow->params.side, pitch = shadow->map.tiles * SHADOW_LAYERS * S;
+    const float(*rays)[4] =
+        (const float(*)[4])(surface ? shadow->params.spread : shadow->params.ray);
+    int count = surface ? LEFT_SPREAD : LEFT_RAYS, side = shadow->params.side,
+        pitch = shadow->map.tiles * SHADOW_LAYERS * S;
     const float *depths = shadow->depths + (size_t)map * (size_t)side * (size_t)side;
     const uint32_t *layers = shadow->layers + (size_t)map * (size_t)side * (size_t)pitch;
     float reach = shadow->params.wide[map][0], last = shadow->map.last, front[N], sum[N];
     for (int k = 0; k < N; ++k) front[k] = look->z[k], sum[k] = 0;
-    for (int r = 0; r < LEFT_RAYS; ++r) {
-        const float *ray = shadow->params.ray[r];
+    for (int r = 0; r < count; ++r) {
         for (int k = 0; k < N; ++k) {
             float off = reach * simd_positive(look->z[k]);
-            int column = left_texel(look->u[k] + off * ray[0], side),
-                row = left_texel(look->v[k] + off * ray[1], side);
+            int column = left_texel(look->u[k] + off * rays[r][0], side),
+                row = left_texel(look->v[k] + off * rays[r][1], side);
             front[k] = simd_min(depths[row * side + column], front[k]);
         }
     }
-    for (int r = 0; r < LEFT_RAYS; ++r) {
-        const float *ray = shadow->params.ray[r];
+    for (int r = 0; r < count; ++r) {
+        const float *ray = rays[r];
         float fibres[N], share[N];
         for (int k = 0; k < N; ++k) fibres[k] = share[k] = 0;
         for (int slab = 0; slab < LEFT_SLABS; ++slab) {
             float middle = reach * left_slab_middle(slab), ends[2] = {0, left_slab_end(slab)};
             if (slab) ends[0] = left_slab_end(slab - 1);
             for (int k = 0; k < N; ++k) {
-                float span = look->z[k] - front[k], off = middle * span;
-                int column = left_texel(look->u[k] + off * ray[0] + ray[2], side),
-                    row = left_texel(look->v[k] + off * ray[1] + ray[3], side),
+                float span = look->z[k] - front[k], off = middle * span,
+                      u = look->u[k] + off * ray[0] + ray[2],
+                      v = look->v[k] + off * ray[1] + ray[3];
+                int column = left_texel(u, side), row = left_texel(v, side),
                     at = row * pitch + column / S * (SHADOW_LAYERS * S) + column % S;
                 float begin = depths[row * side + column], depth[2];
                 for (int e = 0; e < 2; ++e) {
@@ -188,7 +193,8 @@ SIMD_INLINE void shadow_look_wide(const LaneShadow *shadow, int map, const Shado
                     share[k] = layer - (float)whole;
                     depth[e] = layer_depth(layers[at + whole * S], share[k]);
                 }
-                fibres[k] += depth[1] - depth[0];
+                float met = depth[1] - depth[0];
+                fibres[k] += surface ? left_on_map(u, v, (float)side) * met : met;
             }
         }
         for (int k = 0; k < N; ++k) {
@@ -196,17 +202,19 @@ SIMD_INLINE void shadow_look_wide(const LaneShadow *shadow, int map, const Shado
             sum[k] += left_of_fibres(simd_positive(fibres[k]) * look->inside[k]);
         }
     }
-    for (int k = 0; k < N; ++k) left[k] = sum[k] * (1.f / LEFT_RAYS);
+    float scale = 1 / (float)count;
+    for (int k = 0; k < N; ++k) left[k] = scale * sum[k];
 }
 
+// `surface`: the points lie on a mesh or a floor.
 SIMD_INLINE void shadow_look_hair(const LaneShadow *shadow, int map, const ShadowLook *look,
-                                  const float radius[SHADOW_LOOK], const float opacity[SHADOW_LOOK],
-                                  float left[SHADOW_LOOK])
+                                  bool surface, const float radius[SHADOW_LOOK],
+                                  const float opacity[SHADOW_LOOK], float left[SHADOW_LOOK])
 {
     float width[SHADOW_LOOK], across = 2 * shadow->params.place[map][3];
     for (int k = 0; k < SHADOW_LOOK; ++k) width[k] = radius[k] * across;
     if (shadow->layers && shadow->params.wide[map][0] > 0)
-        shadow_look_wide(shadow, map, look, width, opacity, left);
+        shadow_look_wide(shadow, map, look, surface, width, opacity, left);
     else if (shadow->layers)
         shadow_look_deep(shadow, map, look, width, opacity, left);
     else
@@ -335,8 +343,8 @@ SIMD_INLINE void lane_shadow_left_of(const LaneShadow *shadow, int map,
 {
     const float *before = shadow->params.from_world[map][3];
     ShadowLook look;
-    shadow_look(shadow, map, x, &look);
-    shadow_look_hair(shadow, map, &look, radius, opacity, left);
+    shadow_look(shadow, map, x, 0, &look);
+    shadow_look_hair(shadow, map, &look, false, radius, opacity, left);
     if (!shadow->by_mesh) return;
     float past[SHADOW_LOOK], covered[SHADOW_LOOK];
     shadow_look_mesh(shadow, map, x, 2, past, covered);
@@ -373,9 +381,9 @@ SIMD_INLINE void lane_shadow_left_on(const LaneShadow *shadow, const float x[3][
             shone[k] = ((facing > -wrap) & (w > 0)) ? 1.f : 0.f;
             own[k] = wrap > 0 ? t * t * (3 - 2 * t) : 1;
         }
-        shadow_look(shadow, map, x, &look);
+        shadow_look(shadow, map, x, shadow->layers ? shadow->params.wide[map][0] : 0, &look);
         for (int k = 0; k < SHADOW_LOOK; ++k) look.inside[k] *= look.z[k] > 0 ? shone[k] : 0;
-        shadow_look_hair(shadow, map, &look, none, none, left[map]);
+        shadow_look_hair(shadow, map, &look, true, none, none, left[map]);
         if (!shadow->by_mesh) continue;
         float past[SHADOW_LOOK], covered[SHADOW_LOOK];
         shadow_look_mesh(shadow, map, x, taps, past, covered);

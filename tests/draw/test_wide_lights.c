@@ -113,6 +113,50 @@ static void a_strand_hides_its_share(void **state)
     }
 }
 
+// The largest change of the light on a floor over a sixteenth of the penumbra's width, along a line
+// through the edge of a strand at `edge` (m).
+static double largest_step(const ShadowStage *stage, bool along_x, double edge, double wide)
+{
+    enum { FINE = 12 * SHADOW_LOOK, APART = FINE / 24 }; // points over 3 half-widths
+    float share[FINE];
+    double most = 0;
+    for (int i = 0; i < FINE; i += SHADOW_LOOK) {
+        float x[3][SHADOW_LOOK] = {{0}}, normal[3][SHADOW_LOOK] = {{0}},
+              left[MAX_LIGHTS][SHADOW_LOOK];
+        for (int k = 0; k < SHADOW_LOOK; ++k) {
+            x[along_x ? 0 : 2][k] = (float)(edge + wide * (3.0 * (i + k) / FINE - 1.5));
+            x[1][k] = -DOWN;
+            normal[1][k] = 1;
+        }
+        lane_shadow_left_on(&stage->lanes, (const float(*)[SHADOW_LOOK])x,
+                            (const float(*)[SHADOW_LOOK])normal, 0, 2, left);
+        memcpy(share + i, left[0], sizeof left[0]);
+    }
+    for (int i = APART; i < FINE; ++i)
+        most = fmax(most, fabs((double)share[i] - (double)share[i - APART]));
+    return most;
+}
+
+// Across a strand of the opacity 0.8 and past its end, where the strand's map ends, too. The exact
+// light changes by at most 0.8 * (4 / pi) / 16 = 0.064 over a sixteenth of the penumbra. One ray
+// changes it by 0.8 / 24 = 0.033, and it may be ahead at one end and late at the other: 0.131.
+// (test_base compares shaders with this code.)
+static void a_penumbra_on_a_floor_has_no_steps(void **state)
+{
+    (void)state;
+    const double half = 0.06, wide = (double)DOWN * tan((double)RADIUS_DEG * M_PI / 180);
+    Light light = LIGHT_ABOVE;
+    ShadowStage stage;
+    light.radius = RADIUS_DEG;
+    shadow_stage_open(&stage, shadow_stage_layers(1), (float)half, 0.8f, NULL, &light);
+    shadow_stage_draw(&stage, SHADOW_DOM, 256, 1, SHADOW_BY_LANES);
+    double across = largest_step(&stage, false, half, wide),
+           end = largest_step(&stage, true, 0.5, wide);
+    print_message("steps of %.3f across a strand, of %.3f at its end\n", across, end);
+    assert_true(across < 0.131 && end < 0.131);
+    shadow_stage_close(&stage);
+}
+
 // A slanted surface that all of the disc shines on has no shadow of its own.
 static void a_lit_mesh_stays_lit(void **state)
 {
@@ -178,6 +222,7 @@ int main(void)
         cmocka_unit_test(a_meshs_edge_hides_its_share),
         cmocka_unit_test(a_lamps_radius_is_a_length),
         cmocka_unit_test(a_strand_hides_its_share),
+        cmocka_unit_test(a_penumbra_on_a_floor_has_no_steps),
         cmocka_unit_test(a_lit_mesh_stays_lit),
         cmocka_unit_test(a_lobe_is_widened_as_its_mean),
     };
