@@ -5,6 +5,7 @@
 #include "base/activity.h"
 #include "mesh/mesh_read.h"
 #include "mesh/mesh_sequence.h"
+#include "scene/root_distance.h"
 #include "strands/paint.h"
 #include "strands/strands_edit.h"
 #include "strands/strands_read.h"
@@ -212,6 +213,10 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
                                .shape = &assets->bodies[b],
                                .messages = messages};
         TRY(load_body(&load, error));
+        // A deforming mesh has had its own warning.
+        if (messages && assets->meshes[b].triangle_count && !scene->bodies[b].given_mesh &&
+            !scene->bodies[b].shape)
+            TRY(root_distance_warn(scene, b, assets, messages, error));
     }
     if (*scene->run.environment)
         TRY(environment_read(&assets->environment, scene->run.environment,

@@ -167,6 +167,55 @@ static void messages_name_the_file(void **state)
     }
 }
 
+// The hair of a.tfx grows on m.obj if both have the same unit.
+static void hair_away_from_its_mesh_gets_a_message(void **state)
+{
+    static const struct {
+        const char *options, *mesh, *part; // part of the message; NULL: there is none
+    } cases[] = {
+        {"--unit m", "m.obj", NULL},
+        {"--unit cm", "m.obj", NULL},
+        {"--unit cm --mesh-unit cm", "m.obj", NULL},
+        {"--unit m --mesh-unit cm", "m.obj", "with --mesh-unit m it fits\n"},
+        {"--unit m --mesh-unit 0.3", "m.obj", "with --mesh-unit m it fits\n"},
+        {"--unit cm --mesh-unit m", "m.obj", "with --unit m it fits\n"},
+        {"--unit in --mesh-unit m", "m.obj", "with --unit m it fits\n"},
+        {"--unit cm", "metres.obj", "with --mesh-unit m it fits\n"},
+        // 2 % of a diagonal of sqrt(2) m are 28 mm
+        {"--unit m", "near.obj", NULL},
+        {"--unit m", "far.obj",
+         "more than 0.03 m from this mesh, which is 1.4 m across: expected "
+         "the mesh on which the hair was groomed"},
+        {"--unit m", "flat.obj", NULL},
+    };
+    write_files(state);
+    temporary_write(state, "metres.obj",
+                    "v 0.01 0.02 0.03\nv 0.02 0.02 0.03\nv 0.01 0.03 0.03\nf 1 2 3\n", 0644);
+    temporary_write(state, "near.obj", "v 1 2 3.026\nv 2 2 3.026\nv 1 3 3.026\nf 1 2 3\n", 0644);
+    // The root is 0.03 m beside the middle of the triangle's side, far from all vertices.
+    temporary_write(state, "far.obj", "v 1.03 1.5 3\nv 2.03 1.5 3\nv 1.03 2.5 3\nf 1 2 3\n", 0644);
+    temporary_write(state, "flat.obj", "v 5 5 5\nv 6 5 5\nv 7 5 5\nf 1 2 3\n", 0644);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char line[1200], *text;
+        const char *mesh = temporary_path(state, cases[i].mesh);
+        Scene scene;
+        Assets assets;
+        snprintf(line, sizeof line, "%s %s --mesh %s -o x.png", temporary_path(state, "a.tfx"),
+                 cases[i].options, mesh);
+        assert_read(&scene, line);
+        load(&assets, &scene, &text);
+        if (cases[i].part) {
+            assert_non_null(strstr(text, cases[i].mesh));
+            if (!strstr(text, cases[i].part)) fail_msg("'%s' lacks '%s'", text, cases[i].part);
+        } else {
+            assert_string_equal(text, "");
+        }
+        free(text);
+        assets_destroy(&assets);
+        scene_destroy(&scene);
+    }
+}
+
 static void errors_name_the_file(void **state)
 {
     static const char *const CASES[][2] = {
@@ -235,6 +284,7 @@ int main(void)
         TEST(bodies_have_meshes_of_their_own),
         TEST(hair_and_meshes_may_come_from_memory),
         TEST(messages_name_the_file),
+        TEST(hair_away_from_its_mesh_gets_a_message),
         TEST(errors_name_the_file),
         TEST(a_check_reports_every_file),
     };
