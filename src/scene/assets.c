@@ -216,7 +216,9 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
         // A deforming mesh has had its own warning.
         if (messages && assets->meshes[b].triangle_count && !scene->bodies[b].given_mesh &&
             !scene->bodies[b].shape)
-            TRY(root_distance_warn(scene, b, assets, messages, error));
+            TRY(root_distance_warn(scene, b, &assets->meshes[b], assets->strands,
+                                   (double)assets->reports[scene->bodies[b].first].unit_used,
+                                   messages, error));
     }
     if (*scene->run.environment)
         TRY(environment_read(&assets->environment, scene->run.environment,

@@ -25,19 +25,19 @@ typedef struct Roots {
     uint32_t count;
 } Roots;
 
-static Result collect(Roots *roots, const Scene *scene, const SceneBody *body, const Assets *assets,
+static Result collect(Roots *roots, const Scene *scene, const SceneBody *body, const Strands *all,
                       Error *error)
 {
-    uint64_t all = 0, number = 0;
+    uint64_t total = 0, number = 0;
     for (uint32_t i = body->first; i < body->first + body->section_count; ++i)
-        if (!scene->sections[i].params.hidden) all += assets->strands[i].strand_count;
-    uint64_t stride = all / MOST_ROOTS + 1;
+        if (!scene->sections[i].params.hidden) total += all[i].strand_count;
+    uint64_t stride = total / MOST_ROOTS + 1;
     roots->at = malloc((MOST_ROOTS + 1) * sizeof *roots->at);
     roots->distance = malloc((MOST_ROOTS + 1) * sizeof *roots->distance);
     if (!roots->at || !roots->distance)
         return error_set(error, RESULT_FAILED, "no memory to measure roots");
     for (uint32_t i = body->first; i < body->first + body->section_count; ++i) {
-        const Strands *strands = &assets->strands[i];
+        const Strands *strands = &all[i];
         for (uint32_t s = 0; !scene->sections[i].params.hidden && s < strands->strand_count; ++s)
             if (number++ % stride == 0)
                 double3_from_float(strands->position[strands->first[s]], roots->at[roots->count++]);
@@ -129,20 +129,18 @@ static void warn(FILE *messages, const Scene *scene, const SceneBody *body, doub
                           "--mesh-up)\n");
 }
 
-Result root_distance_warn(const Scene *scene, uint32_t b, const Assets *assets, FILE *messages,
-                          Error *error)
+Result root_distance_warn(const Scene *scene, uint32_t b, const Mesh *mesh, const Strands *strands,
+                          double hair_unit, FILE *messages, Error *error)
 {
     const SceneBody *body = &scene->bodies[b];
-    const Mesh *mesh = &assets->meshes[b];
     Roots roots = {0};
     Surface surface = {0};
-    Result result = collect(&roots, scene, body, assets, error);
+    Result result = collect(&roots, scene, body, strands, error);
     double size = diagonal(mesh);
     if (result == RESULT_OK && roots.count && !has_vertices_near(&roots, mesh, APART * size)) {
         result = surface_create(&surface, mesh, body->params.mesh, error);
         if (result == RESULT_OK)
-            warn(messages, scene, body, (double)assets->reports[body->first].unit_used, &roots,
-                 &surface, size);
+            warn(messages, scene, body, hair_unit, &roots, &surface, size);
         else if (result == RESULT_BAD_INPUT)
             result = RESULT_OK; // such a mesh can be drawn
         surface_destroy(&surface);
