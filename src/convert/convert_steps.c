@@ -175,6 +175,13 @@ const char *convert_steps_need_mesh(const ConvertSteps *steps)
     return NULL;
 }
 
+bool convert_steps_fit(const ConvertSteps *steps)
+{
+    for (int i = 0; i < steps->count; i++)
+        if (steps->step[i].kind == CONVERT_FIT) return true;
+    return false;
+}
+
 static void tell_fit(const StrandsFit *fit, FILE *messages)
 {
     fprintf(messages,

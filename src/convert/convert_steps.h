@@ -48,6 +48,8 @@ Result convert_steps_parse(ConvertSteps *steps, const OptionSteps *options, Erro
 
 // The name of a step that needs a mesh, NULL if none does.
 const char *convert_steps_need_mesh(const ConvertSteps *steps);
+// Whether one of the steps is --fit.
+bool convert_steps_fit(const ConvertSteps *steps);
 
 // Does the steps in their order. Reports on `messages` what --fit, --attach and --push-out have
 // done in the first frame. RESULT_FAILED when memory is short, a strand would have too many

@@ -19,6 +19,7 @@
 #include "strands/strands.h"
 #include "strands/strands_read.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,8 +81,8 @@ static const Option OPTIONS[] = {
      "head or body for --fit, --attach and --push-out, and for --stats, which then prints how deep "
      "hair is inside it: OBJ, PLY, or a deforming mesh with faces (its first sample)"},
     {"mesh-unit", 0, OPTION_STRING, AT(mesh_unit), UNITS, 0, 0,
-     "length of one unit of the mesh [default: as the file says, otherwise as for the first hair "
-     "file]"},
+     "length of one unit of the mesh [default: as the file says; otherwise as for the first hair "
+     "file or, with --fit, guessed from the size of an OBJ or PLY file]"},
     {"mesh-up", 0, OPTION_WORD, AT(mesh_up), FROM_AXES, 0, 0,
      "axis of the mesh that points up; auto: as the file says, otherwise as for the first hair "
      "file [default auto]"},
@@ -302,6 +303,42 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
 
 // --- The work.
 
+// Guesses the unit of a mesh in the units of its file, and converts it to metres: of a metre, a
+// centimetre and a millimetre the one with which the diagonal of its bounding box comes nearest to
+// 0.8 m, as a ratio. That is between a head (0.3 m) and a body (2.2 m). Returns the unit.
+static double guess_unit(Mesh *mesh)
+{
+    static const double USUAL_SIZE = 0.8;
+    float low[3], high[3];
+    double square = 0, unit = 1;
+    mesh_bounds(mesh, low, high);
+    for (int k = 0; k < 3; ++k) square += pow((double)high[k] - (double)low[k], 2);
+    if (sqrt(square) > USUAL_SIZE * sqrt(1e2)) unit = 0.01;
+    if (sqrt(square) > USUAL_SIZE * sqrt(1e5)) unit = 0.001;
+    for (uint32_t v = 0; v < mesh->vertex_count; ++v)
+        for (int k = 0; k < 3; ++k)
+            mesh->position[v][k] = (float)(unit * (double)mesh->position[v][k]);
+    return unit;
+}
+
+// A mesh in one pose. It has the unit of the hair, unless the hair is to be fitted to it: then it
+// is not the mesh on which the hair was groomed, and only its size tells its unit.
+static Result read_rigid_mesh(Job *job, const MeshSequenceOptions *options, Error *error)
+{
+    const char *path = job->command.mesh;
+    bool guesses = options->unit == 0 && convert_steps_fit(&job->steps),
+         up_z = (options->up_z >= 0 ? options->up_z : options->otherwise_up_z) == 1;
+    double unit = guesses ? 1 : options->unit > 0 ? options->unit : options->otherwise_unit;
+    Result result = mesh_read(&job->mesh, path, (float)unit, up_z, error);
+    if (result == RESULT_OK && guesses) unit = guess_unit(&job->mesh);
+    // If hair and mesh are in metres, nothing was assumed that a reader would not expect.
+    if (result == RESULT_OK && guesses && !job->command.quiet &&
+        (unit != 1 || options->otherwise_unit != 1))
+        fprintf(stderr, "%s: guessed a unit of %g m: set --mesh-unit if this is wrong\n",
+                quote(path).text, unit);
+    return strands_read_as_mesh(result, path, error);
+}
+
 // Reads the mesh after the first frame of hair, so that the hair's unit and up axis can serve as
 // defaults for the mesh.
 static Result read_mesh(Job *job, Error *error)
@@ -319,13 +356,9 @@ static Result read_mesh(Job *job, Error *error)
     if (!path) return RESULT_OK;
     MeshSequence sequence = {0};
     Mesh rest = {0};
-    Result result =
-        mesh_sequence_matches(path)
-            ? mesh_sequence_read(&sequence, &job->mesh, &rest, path, &options, error)
-            : mesh_read(&job->mesh, path,
-                        (float)(options.unit > 0 ? options.unit : options.otherwise_unit),
-                        (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1, error);
-    if (!mesh_sequence_matches(path)) result = strands_read_as_mesh(result, path, error);
+    Result result = mesh_sequence_matches(path)
+                        ? mesh_sequence_read(&sequence, &job->mesh, &rest, path, &options, error)
+                        : read_rigid_mesh(job, &options, error);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&rest);
     THEN(result, surface_create(&job->surface, &job->mesh, path, error));
