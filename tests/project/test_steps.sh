@@ -32,7 +32,7 @@ ends() {
     env --default-signal=INT TRACTRIX_BIN="${programs:-$work/fake}" PATH="$work/fake:$PATH" timeout -k 1 --foreground 60 "$@" >"$work/out" 2>"$work/err" </dev/null &
     pid=$!
     for _ in $(seq 200); do
-        if [ -s "$work/started" ] || [ -n "$(find "$here" -name '*.cache' -size +0 2>/dev/null)" ]; then break; fi
+        if [ -s "$work/started" ] || [ -n "$(find "$here" -name '*cache' -size +0 2>/dev/null)" ]; then break; fi
         sleep 0.05
     done
     begin_ms=$(($(date +%s%N) / 1000000))
