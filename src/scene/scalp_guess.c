@@ -99,6 +99,11 @@ static void report(FILE *messages, const char *place, const ScalpFit *fit, doubl
                 fit->centre[1], fit->centre[2], 1e3 * fit->error);
     else if (verbose || fit->other_size)
         fprintf(messages, "%sscalp: none: %s\n", place, fit->reason);
+    if (fit->around)
+        fprintf(messages,
+                "%sthe roots surround a body that is not drawn, and the far side shows through: "
+                "expected --mesh with its shape\n",
+                place);
     if ((fit->found || fit->other_size) && fabs(log(fit->radius[0] / HEAD_RADIUS[0])) > log(UNLIKE))
         suggest_unit(messages, place, fit, unit);
 }

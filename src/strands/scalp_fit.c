@@ -164,8 +164,14 @@ static void measure(Roots *roots, const double centre[3], const double radius[3]
 
 // --- Checks that the ellipsoid is a head.
 
-static const char *judge_directions(const Roots *roots, const double centre[3],
-                                    const double radius[3])
+// Where the roots lie around the ellipsoid, and where their strands leave.
+typedef struct Directions {
+    double together, up; // length and y of the mean unit vector from the centre to the roots
+    double out;          // mean cosine of first segment and normal
+} Directions;
+
+static Directions find_directions(const Roots *roots, const double centre[3],
+                                  const double radius[3])
 {
     double mean[3] = {0}, out = 0;
     for (uint32_t i = 0; i < roots->count; ++i) {
@@ -181,9 +187,14 @@ static const char *judge_directions(const Roots *roots, const double centre[3],
         }
     }
     double together = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
-    if (together > ONE_WAY) return "the roots are a patch";
-    if (together < AROUND || mean[1] < LEAST_UP) return "the roots are not on top";
-    return out < LEAST_OUT ? "strands do not leave outwards" : NULL;
+    return (Directions){.together = together, .up = mean[1], .out = out};
+}
+
+static const char *judge_directions(const Directions *found)
+{
+    if (found->together > ONE_WAY) return "the roots are a patch";
+    if (found->together < AROUND || found->up < LEAST_UP) return "the roots are not on top";
+    return found->out < LEAST_OUT ? "strands do not leave outwards" : NULL;
 }
 
 static const char *judge_form(const double radius[3], double error)
@@ -240,8 +251,10 @@ static const char *fit_roots(ScalpFit *fit, Roots *roots)
         fit->centre[k] = roots->middle[k] + roots->scale * centre[k];
         fit->radius[k] = roots->scale * radius[k];
     }
+    const Directions found = find_directions(roots, centre, radius);
+    fit->around = found.together < AROUND && found.out >= LEAST_OUT;
     const char *reason = judge_form(fit->radius, fit->error);
-    if (!reason) reason = judge_directions(roots, centre, radius);
+    if (!reason) reason = judge_directions(&found);
     for (int k = 0; k < 3 && !reason; ++k) fit->radius[k] -= sunk;
     return reason;
 }

@@ -8,6 +8,8 @@
 typedef struct ScalpFit {
     bool found;         // it looks like a head, see below
     bool other_size;    // it would look like a head in another size
+    bool around;        // fur: roots surround the ellipsoid, whatever its form and size, and
+                        // strands leave it outwards
     double centre[3];   // m
     double radius[3];   // m, > 0; also set with other_size
     double error;       // m, median distance of the roots from the surface

@@ -183,12 +183,12 @@ run 3 --check "$work/text.tfx"
 claim "no usable GL ends with 4 and says what was tried"
 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null
 export __EGL_VENDOR_LIBRARY_FILENAMES
-run 4 $hair --backend egl --frames 1 -o "$work/x/"; one_line; says "surfaceless"; says "libgl1-mesa-dri"
+run 4 $hair --scalp none --backend egl --frames 1 -o "$work/x/"; one_line; says "surfaceless"; says "libgl1-mesa-dri"
 unset __EGL_VENDOR_LIBRARY_FILENAMES
 GALLIUM_DRIVER=nonsense; export GALLIUM_DRIVER
 run 4 $hair --frames 1 -q -o "$work/x/"; says "expected llvmpipe or softpipe"
 unset GALLIUM_DRIVER
-run 4 $hair --device 31 --frames 1 -o "$work/x/"; one_line; says "--list-devices"
+run 4 $hair --scalp none --device 31 --frames 1 -o "$work/x/"; one_line; says "--list-devices"
 
 claim "OSMesa is another way in"
 # shellcheck disable=SC2086
@@ -290,7 +290,8 @@ run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no
 if grep -q '"sphere"' "$work/stats.json"; then bad "a fitted head holds hair with --no-collide-mesh"; else good; fi
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
 if cmp -s "$work/head.png" "$work/bare.png"; then bad "the same picture"; else good; fi
-run 0 assets/fur.tfx --frames 1 --size 16x16 --scatter none -v -o "$work/fur.png"; says "scalp: none: the roots are not on top"
+run 0 assets/fur.tfx --frames 1 --size 16x16 --scatter none -v -o "$work/fur.png"; says "scalp: none: the roots are not on top"; says "the roots surround a body that is not drawn, and the far side shows through: expected --mesh with its shape"
+run 0 assets/fur.tfx --mesh assets/ball.obj --frames 1 --size 16x16 --scatter none -o "$work/fur.png"; if grep -q "surround" "$work/err"; then bad "said something"; else good; fi
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 16x16 -q -o "$work/bare.png"; silent err
 run 0 assets/curls.tfx --frames 1 --size 16x16 --look plain -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 3 --size 16x16 --cache "$work/scalp.cache"; run 0 assets/curls.tfx --scatter none --followers 4 --frames 3 --size 16x16 --from-cache "$work/scalp.cache" -o "$work/scalp/"

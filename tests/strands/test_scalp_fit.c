@@ -124,6 +124,27 @@ static void hair_styles_have_a_head_and_roots_are_seen(void **state)
     }
 }
 
+// Fur is told from the hair of a scalp and from strands in all directions; form and size of the
+// body do not matter.
+static void roots_around_a_body_are_found(void **state)
+{
+    (void)state;
+    Strands ball = make_hair(STRANDS_STYLE_FUR), random = make_hair(STRANDS_STYLE_RANDOM),
+            scalp = make_scalp(500, -0.3, 1, 0), inwards = make_scalp(500, -1, -1, 0);
+    assert_true(scalp_fit(&ball, 1).around);
+    assert_false(scalp_fit(&random, 1).around);
+    assert_false(scalp_fit(&scalp, 1).around);
+    assert_false(scalp_fit(&inwards, 1).around);
+    for (uint32_t v = 0; v < ball.vertex_count; ++v) ball.position[v][2] *= 5;
+    ScalpFit fit = scalp_fit(&ball, 1);
+    assert_true(fit.around);
+    assert_string_equal(fit.reason, "the ellipsoid is too long");
+    strands_destroy(&ball);
+    strands_destroy(&random);
+    strands_destroy(&scalp);
+    strands_destroy(&inwards);
+}
+
 static void what_is_no_scalp_gets_no_head(void **state)
 {
     (void)state;
@@ -163,6 +184,7 @@ int main(void)
         cmocka_unit_test(roots_that_lie_off_do_not_count_much),
         cmocka_unit_test(hair_styles_have_a_head_and_roots_are_seen),
         cmocka_unit_test(what_is_no_scalp_gets_no_head),
+        cmocka_unit_test(roots_around_a_body_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
