@@ -200,7 +200,6 @@ static Result check_holds(const Command *command, const char *option, uint32_t f
 
 static Result check(const Command *command, Error *error)
 {
-    if (!command->output.path) return error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     if (command->recipe.followers > 0)
         TRY(check_holds(command, "followers", STRANDS_HAS_FOLLOWERS, error));
     if (command->recipe.thickness > 0.0)
@@ -216,7 +215,7 @@ Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, 
     if (result != RESULT_OK || *done) return result;
     if (argc - first != 1)
         return error_set(error, RESULT_USAGE, "fur: got %d files, expected one mesh", argc - first);
-    gen_choose_format(&command.output);
+    TRY(gen_choose_format(&command.output, error));
     *options = (FurOptions){.recipe = command.recipe,
                             .output = command.output,
                             .mesh = argv[first],

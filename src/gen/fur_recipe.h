@@ -63,4 +63,5 @@ typedef struct FurOptions {
 } FurOptions;
 
 // argv[0] is the word fur. Errors of options_parse, and RESULT_USAGE for an invalid combination.
+// The path of the output may be missing (NULL).
 Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, Error *error);

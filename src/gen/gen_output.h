@@ -25,11 +25,8 @@ static inline FILE *gen_messages(const GenOutput *output)
 }
 
 // Without --format, the suffix decides; other suffixes and standard output get TressFX 4.
-static inline void gen_choose_format(GenOutput *output)
-{
-    FormatKind kind = output->path ? format_choose(output->path, NULL) : FORMAT_KINDS;
-    if (output->format < 0) output->format = kind < FORMAT_KINDS ? kind : FORMAT_TFX4;
-}
+// RESULT_USAGE if the suffix is that of an image or a video.
+Result gen_choose_format(GenOutput *output, Error *error);
 
 // Rows of an option table; `at` is the offset of a GenOutput's member, or of an int, in the
 // command's struct.

@@ -171,7 +171,7 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     if (first < argc)
         return error_set(error, RESULT_USAGE, "%s: got a file, expected only options and -o FILE",
                          argv[first]);
-    gen_choose_format(&command->output);
+    TRY(gen_choose_format(&command->output, error));
     return check_effect(command, error);
 }
 
@@ -315,7 +315,9 @@ static Result grow_fur(int argc, char **argv, Error *error)
     activity_set("growing hair");
     Result result = mesh_read(&mesh, options.mesh, (float)options.unit, options.up_z, error);
     TRY(strands_read_as_mesh(result, options.mesh, error));
-    result = write_fur(&options, &mesh, error);
+    // After the mesh: a file of hair in its place is the first thing to mend.
+    result = options.output.path ? write_fur(&options, &mesh, error)
+                                 : error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     mesh_destroy(&mesh);
     return result;
 }

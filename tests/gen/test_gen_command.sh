@@ -27,6 +27,16 @@ refused 2 "65537 strands of 65535 vertices: expected fewer than 2^32 - 1 vertice
 refused 2 "--set 1k16 and --count: expected only one of them" --set 1k16 --count 5
 refused 2 "x: got a file, expected only options" x
 run 2; says "no output: expected -o FILE"
+run 2 fur assets/ball.obj; says "no output: expected -o FILE"; one_line
+run 3 fur assets/bob.tfx; says "bob.tfx: hair (TressFX 3 binary), not a mesh: expected a mesh"; one_line
+
+claim "an image is no name for hair unless --format says so"
+for image in x.png x.JPG x.exr x.mp4; do
+    run 2 --count 5 -o "$work/$image"; says "$image: an image, not hair: expected a name ending in .usda, "; one_line
+    run 2 fur assets/ball.obj -n 9 -o "$work/$image"; says "$image: an image, not hair"; one_line
+    none "$work/$image"
+done
+run 0 --count 5 --format tfx4 -q -o "$work/hair.png"; run 0 --count 5 -q -o "$work/hair.dat"; equal "$work/hair.png" "$work/hair.dat"
 
 claim "help and manual page"
 run 0 --help; says "Usage: tractrix-gen"; says "Defaults. random: --shape sphere --count 1000"
