@@ -78,6 +78,27 @@ vec3 longitudinal(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d)
 }
 #endif
 
+#if WIDE
+// The same in light whose directions have the variance `wide`.
+vec3 longitudinal_wide(Fibre m, Outgoing to, float sin_i, float cos_i, float cos_d, float wide)
+{
+    if (wide <= 0.0) return longitudinal(m, to, sin_i, cos_i, cos_d);
+    float shift = fibre_wide_shift(wide);
+    vec3 along;
+    for (int p = 0; p < 3; ++p) {
+        float sharp = fibre_wide_sharpness(m.sharpness[p], wide);
+#if MARSCHNER == 2
+        along[p] = fibre_gauss_pair(asin(clamp(sin_i, -1.0, 1.0)) + to.angle[p], sharp, cos_i,
+                                    cos_d, shift);
+#else
+        along[p] = fibre_lobe_pair(sin_i, cos_i, to.sine[p], to.cosine[p], sharp,
+                                   fibre_lobe_scale(sharp), shift);
+#endif
+    }
+    return along;
+}
+#endif
+
 // The sum over R, TT and TRT of M (`along`) times N. `at`: the place in the table, in nodes.
 vec3 azimuthal(vec2 at, float color)
 {
@@ -98,19 +119,6 @@ vec3 albedo_of(Fibre m, vec3 base)
                 fibre_albedo(base.g, m.albedo.x, m.albedo.y),
                 fibre_albedo(base.b, m.albedo.x, m.albedo.y));
 }
-
-#if WIDE
-// The lobes in light whose directions have the variance `wide`.
-Fibre widened(Fibre m, float wide)
-{
-    if (wide > 0.0)
-        for (int p = 0; p < 3; ++p) {
-            m.sharpness[p] = fibre_wide_sharpness(m.sharpness[p], wide);
-            m.scale[p] = fibre_lobe_scale(m.sharpness[p]);
-        }
-    return m;
-}
-#endif
 
 // Linear RGB of a fibre at x, at point `point` of a batch. `base`: share of white light that the
 // fibre's diameter transmits; `tangent`: unit, root to tip; `to_eye`: unit.
@@ -134,8 +142,7 @@ vec3 shade_fibre(Fibre m, vec3 base, int point, vec3 x, vec3 tangent, vec3 to_ey
         float cos_d = cos_r;
 #endif
 #if WIDE
-        vec3 along =
-            longitudinal(widened(m, draw_params.light_color[i].w), to, sin_i, cos_i, cos_d);
+        vec3 along = longitudinal_wide(m, to, sin_i, cos_i, cos_d, draw_params.light_color[i].w);
 #else
         vec3 along = longitudinal(m, to, sin_i, cos_i, cos_d);
 #endif

@@ -80,7 +80,7 @@ float light_through_wide(int map, vec2 place, float depth, vec4 of_light, bool s
         vec4 ray = surface ? shadow_params.spread[r] : shadow_params.ray[r];
         float fibres = 0.0, share = 0.0;
         for (int slab = 0; slab < LEFT_SLABS; ++slab) {
-            vec2 there = place + reach * left_slab_middle(slab) * span * ray.xy + ray.zw;
+            vec2 there = place + reach * left_slab_place(slab) * span * ray.xy + ray.zw;
             int texel = wide_texel(map, there);
             float on = surface ? left_on_map(there.x, there.y, float(shadow_side)) : 1.0;
             float begin = texelFetch(shadow_depths, texel).x, ends[2];

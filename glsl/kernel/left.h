@@ -27,11 +27,13 @@ SHARED_FUNCTION float left_of_fibres(float fibres) { return SHARED_EXP2(-FLOAT(L
 // start is shifted by up to half a texel, so that the mean over rays is continuous. The nearer a
 // ray comes to the light, the farther it is from the point's own column of texels. Hair: the depths
 // between the first fibre and the point are divided into LEFT_SLABS slabs; in each slab, a ray
-// counts the fibres of the column that contains its middle. From a surface, where the edges of
-// eight shadows would show, LEFT_SPREAD rays go, and they meet nothing beyond the map. Mesh: in
-// LEFT_STEPS steps, whose length grows with the distance from the point, rays look for surfaces in
-// front of them. The mean depth of these surfaces determines how far apart the rays are there; then
-// each ray is tested in LEFT_TURNS rotated positions and is either blocked or not.
+// counts the fibres of the column that contains its middle. The last slab's column is nearer to the
+// point, because the fibres there mostly belong to the thin sheet of hair that contains the point.
+// From a surface, where the edges of eight shadows would show, LEFT_SPREAD rays go, and they meet
+// nothing beyond the map. Mesh: in LEFT_STEPS steps, whose length grows with the distance from the
+// point, rays look for surfaces in front of them. The mean depth of these surfaces determines how
+// far apart the rays are there; then each ray is tested in LEFT_TURNS rotated positions and is
+// either blocked or not.
 #define LEFT_RAYS     8
 #define LEFT_SPREAD   24
 #define LEFT_SLABS    4
@@ -40,11 +42,12 @@ SHARED_FUNCTION float left_of_fibres(float fibres) { return SHARED_EXP2(-FLOAT(L
 #define LEFT_TURN_COS 0.9135455f
 #define LEFT_TURN_SIN 0.4067366f
 
-// Depths as shares of the distance: the middle of slab i, from the point to the first fibre; and
-// the end of slab i, from the first fibre to the point.
-SHARED_FUNCTION float left_slab_middle(int i)
+// Depths as shares of the distance: where the column of slab i is taken, from the point to the
+// first fibre; and the end of slab i, from the first fibre to the point.
+SHARED_FUNCTION float left_slab_place(int i)
 {
-    return 1.0f - (FLOAT(i) + 0.5f) * (1.0f / FLOAT(LEFT_SLABS));
+    float middle = i + 1 < LEFT_SLABS ? 0.5f : 0.75f;
+    return 1.0f - (FLOAT(i) + middle) * (1.0f / FLOAT(LEFT_SLABS));
 }
 
 SHARED_FUNCTION float left_slab_end(int i)

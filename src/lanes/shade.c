@@ -333,8 +333,17 @@ SIMD_INLINE void find_beams(const MaterialParams *m, LaneModel model, Spots *s, 
         float sharp = m->lobe_sharpness[p], scale = m->lobe_scale[p],
               tilt = (float)PI * (0.5f - fibre_turn(m->lobe_tilt_sin[p]));
         if (wide > 0) {
+            float shift = fibre_wide_shift(wide);
             sharp = fibre_wide_sharpness(sharp, wide);
             scale = fibre_lobe_scale(sharp);
+            for (int i = 0; i < W; ++i)
+                beams->along[p][i] =
+                    model == LANE_GAUSS
+                        ? fibre_gauss_pair(angle[i] - tilt, sharp, cosine[i], beams->inclination[i],
+                                           shift)
+                        : fibre_lobe_pair(sine[i], cosine[i], eye->tilted_sine[p][i],
+                                          eye->tilted_cosine[p][i], sharp, scale, shift);
+            continue;
         }
         for (int i = 0; i < W; ++i)
             beams->along[p][i] =

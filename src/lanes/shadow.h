@@ -177,10 +177,10 @@ SIMD_INLINE void shadow_look_wide(const LaneShadow *shadow, int map, const Shado
         float fibres[N], share[N];
         for (int k = 0; k < N; ++k) fibres[k] = share[k] = 0;
         for (int slab = 0; slab < LEFT_SLABS; ++slab) {
-            float middle = reach * left_slab_middle(slab), ends[2] = {0, left_slab_end(slab)};
+            float away = reach * left_slab_place(slab), ends[2] = {0, left_slab_end(slab)};
             if (slab) ends[0] = left_slab_end(slab - 1);
             for (int k = 0; k < N; ++k) {
-                float span = look->z[k] - front[k], off = middle * span,
+                float span = look->z[k] - front[k], off = away * span,
                       u = look->u[k] + off * ray[0] + ray[2],
                       v = look->v[k] + off * ray[1] + ray[3];
                 int column = left_texel(u, side), row = left_texel(v, side),

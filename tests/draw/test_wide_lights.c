@@ -191,7 +191,8 @@ static void a_lobe_is_widened_as_its_mean(void **state)
     const double radius = 15 * M_PI / 180, wide = radius * radius / 4;
     for (double sigma = 5 * M_PI / 180; sigma < 0.4; sigma *= 2) {
         float sharp = (float)(1 / (sigma * sigma)),
-              wider = fibre_wide_sharpness(sharp, (float)wide);
+              wider = fibre_wide_sharpness(sharp, (float)wide),
+              shift = fibre_wide_shift((float)wide);
         double peak = 0, off = 0;
         for (int i = -60; i <= 60; ++i) {
             double in = 0.2, out = -0.2 + i * M_PI / 180, mean = 0;
@@ -202,16 +203,18 @@ static void a_lobe_is_widened_as_its_mean(void **state)
                         (double)fibre_lobe((float)sin(in + x), (float)cos(in + x), (float)sin(out),
                                            (float)cos(out), sharp, fibre_lobe_scale(sharp));
             }
-            double one = (double)fibre_lobe((float)sin(in), (float)cos(in), (float)sin(out),
-                                            (float)cos(out), wider, fibre_lobe_scale(wider));
+            double two =
+                (double)fibre_lobe_pair((float)sin(in), (float)cos(in), (float)sin(out),
+                                        (float)cos(out), wider, fibre_lobe_scale(wider), shift);
             peak = fmax(peak, mean);
-            off = fmax(off, fabs(mean - one));
+            off = fmax(off, fabs(mean - two));
         }
         print_message("lobe of %.0f degrees: off by %.3f of its peak\n", sigma * 180 / M_PI,
                       off / peak);
-        // A disc has no tails, unlike a Gaussian: the error is largest for lobes narrower than the
-        // disc.
-        if (!(off < (sigma < radius / 2 ? 0.12 : 0.03) * peak))
+        // Both lobes together have the disc's variance, but not its edge, which shows most in
+        // lobes narrower than the disc: in the plane, lobes of 0.33 and 0.67 radii are off by 0.023
+        // and 0.006. On the sphere, inclinations add to it.
+        if (!(off < (sigma < radius / 2 ? 0.03 : 0.015) * peak))
             fail_msg("off by %g of %g", off, peak);
     }
 }
