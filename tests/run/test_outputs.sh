@@ -109,7 +109,7 @@ program=$bin/tractrix-gen
 claim "tractrix-gen fur never writes over a map"
 for flag in --density --length-map --comb; do
     cp "$work/ref/r_1.png" "$work/m.png"
-    run 2 fur assets/ball.obj "$flag" "$work/m.png" --count 10 -o "$work/m.png"; refuses "-o" "$flag"
+    run 2 fur assets/ball.obj "$flag" "$work/m.png" --count 10 --format tfx4 -o "$work/m.png"; refuses "-o" "$flag"
     equal "$work/m.png" "$work/ref/r_1.png"
 done
 
