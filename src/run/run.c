@@ -287,7 +287,9 @@ static void report_filled(const Run *run)
     for (uint32_t i = 0; i < run->scene.section_count; ++i) {
         const Section *section = &run->scene.sections[i];
         const Strands *strands = &run->assets.strands[i];
-        if (section->params.hidden || !follow_plan_fills(&section->params, strands)) continue;
+        if (section->params.hidden) continue;
+        follow_plan_tell_gaps(&section->params, strands, quote(section->file).text, stderr);
+        if (!follow_plan_fills(&section->params, strands)) continue;
         fprintf(stderr,
                 "%s: %u followers fill the space between %u strands: set --followers to change "
                 "their number\n",

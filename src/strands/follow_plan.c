@@ -38,10 +38,25 @@ uint32_t follow_plan_fill(const Strands *strands)
     return (uint32_t)fmin(most, 2.0 * MOST_FILLED / count);
 }
 
+// Whether the number is automatic and above 0, unless a fibre radius is given.
+static bool may_fill(const SectionParams *params, const Strands *strands)
+{
+    return params->followers.automatic && !strands->followers && follow_plan_fill(strands) > 0;
+}
+
 bool follow_plan_fills(const SectionParams *params, const Strands *strands)
 {
-    return params->followers.automatic && params->radius.automatic && !strands->followers &&
-           follow_plan_fill(strands) > 0;
+    return params->radius.automatic && may_fill(params, strands);
+}
+
+void follow_plan_tell_gaps(const SectionParams *params, const Strands *strands, const char *name,
+                           FILE *stream)
+{
+    if (params->radius.automatic || !may_fill(params, strands)) return;
+    fprintf(stream,
+            "%s: the space between %u strands is not filled because --radius is given: --followers "
+            "%u --follow interpolate fills it\n",
+            name, strands->strand_count, follow_plan_fill(strands));
 }
 
 FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,

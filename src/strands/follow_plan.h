@@ -7,6 +7,8 @@
 #include "base/params.h"
 #include "strands/strands.h"
 
+#include <stdio.h>
+
 // One follower. Its vertex j of n is at
 //   weight[0] a_j + weight[1] b_j + weight[2] c_j + (1 + separation j / (n - 1)) R offset
 // where a, b, c are the vertices of its guides and R is the head's rotation.
@@ -41,6 +43,11 @@ uint32_t follow_plan_fill(const Strands *strands);
 // the fibre radius, the strands are taken to be all the fibres that there are, and no followers are
 // added.
 bool follow_plan_fills(const SectionParams *params, const Strands *strands);
+
+// If follow_plan_fill does not apply for the only reason that the user gives the fibre radius,
+// prints a line with the options that fill the space. `name`: of the hair file, quoted.
+void follow_plan_tell_gaps(const SectionParams *params, const Strands *strands, const char *name,
+                           FILE *stream);
 
 // The largest distance of a follower from its guide, m; 0 if there are none. (A follower between
 // three guides is within their hull.)

@@ -302,6 +302,13 @@ in_file "$work/stats.json" '"followers": 1200'
 run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "followers" "$work/err"; then bad "said something"; else good; fi
 run 0 assets/curls.tfx --scatter none --frames 1 --size 16x16 -q -o "$work/fill/"; silent err
 
+claim "if only the fibre radius keeps hair of few strands from being filled, a line gives the options"
+run 0 assets/curls.tfx --radius 0.0002 --scatter none --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"
+says "assets/curls.tfx: the space between 300 strands is not filled because --radius is given: --followers 4 --follow interpolate fills it"
+in_file "$work/stats.json" '"followers": 0'
+run 0 assets/curls.tfx --radius 0.0002 --followers 0 --scatter none --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "filled" "$work/err"; then bad "said something"; else good; fi
+run 0 assets/bob.tfx --radius 0.0002 --scatter none --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "filled" "$work/err"; then bad "said something"; else good; fi
+
 claim "a variant that may run away is told, unless quiet"
 # shellcheck disable=SC2086
 {
