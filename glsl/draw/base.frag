@@ -30,6 +30,8 @@ layout(location = 2) out float rim_depth;
 // The depth that hides hair, and the floor's depth.
 float depth = EDGE_NOWHERE, floor_depth = EDGE_NOWHERE;
 vec4 front = vec4(0.0), behind = vec4(0.0); // sums of all samples on either side of the floor
+vec4 rim_sum = vec4(0.0);
+float rim_farthest = 0.0;
 
 #if MESH
 void add_sample(vec4 color, float z)
@@ -77,8 +79,8 @@ void add_samples(ivec2 at, vec4 background)
     for (int i = 0; i < EDGE_SAMPLES; ++i) {
         vec4 light = color[i] / float(EDGE_SAMPLES);
         add_sample(light, z[i]);
-        rim += rims[i] ? vec4(light.rgb, 1.0 / float(EDGE_SAMPLES)) : vec4(0.0);
-        rim_depth = rims[i] ? max(z[i], rim_depth) : rim_depth;
+        rim_sum += rims[i] ? vec4(light.rgb, 1.0 / float(EDGE_SAMPLES)) : vec4(0.0);
+        rim_farthest = rims[i] ? max(z[i], rim_farthest) : rim_farthest;
     }
 }
 #endif
@@ -95,8 +97,6 @@ vec4 find_background()
 
 void main()
 {
-    rim = vec4(0.0);
-    rim_depth = 0.0;
 #if FLOOR
     vec3 way = ray_through(gl_FragCoord.xy);
     float along = (floor_middle.y - draw_params.eye.y) / way.y;
@@ -120,5 +120,7 @@ void main()
 #endif
     base = front + (1.0 - front.a) * shown + (1.0 - shown.a) * behind;
 #endif
+    rim = rim_sum;
+    rim_depth = rim_farthest;
     gl_FragDepth = depth;
 }

@@ -58,7 +58,7 @@ static Result make_room(LaneBase *base, const LaneBaseScene *scene, Error *error
            count = (size_t)(all[2] - all[0]) * (size_t)(all[3] - all[1]),
            words =
                (size_t)((all[2] - all[0] + RIM_BITS - 1) / RIM_BITS) * (size_t)(all[3] - all[1]);
-    size_t room = base->room, rim_room = base->room;
+    size_t room = base->room, rim_room = room; // they grow together
     bool good = room_make(&base->lit, &base->lit_room, lit, sizeof *base->lit) &&
                 room_make(&base->light, &room, count, sizeof *base->light) &&
                 room_make(&base->rim, &rim_room, count, sizeof *base->rim) &&

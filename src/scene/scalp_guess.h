@@ -13,6 +13,5 @@
 // replace the mesh as a collider. Prints one line on `messages` (NULL: does not print) about it or,
 // with `verbose`, about why there is no head. If the scalp's width differs from a head's by a
 // factor of more than 1.4, another line suggests a --unit; if the roots surround a body (fur), one
-// asks for
-// --mesh. RESULT_FAILED when memory is short.
+// asks for --mesh. RESULT_FAILED when memory is short.
 Result scalp_guess(Scene *scene, Assets *assets, FILE *messages, bool verbose, Error *error);

@@ -124,7 +124,7 @@ enum { FILES = 40, FILES_MOST = 32 };
 static Result build_chain(int first, const char *const texts[2], Error *error)
 {
     static GlslSource sources[FILES + 1];
-    static char names[FILES][16], contents[FILES][200];
+    static char names[FILES][24], contents[FILES][200];
     GLuint program;
     for (int i = 0; i < FILES; ++i) {
         snprintf(names[i], sizeof names[i], "chain_%d.comp", i);
