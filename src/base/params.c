@@ -176,12 +176,8 @@ bool params_owned_by(const ParamInfo *info, const char *solver)
 
 // --- Values from and to text.
 
-// Units with a name, in metres.
-static const struct {
-    const char *word;
-    float metres;
-} LENGTH_UNITS[] = {{"m", 1.0f}, {"cm", 0.01f}, {"mm", 0.001f}, {"in", 0.0254f}};
-enum { LENGTH_UNIT_COUNT = sizeof LENGTH_UNITS / sizeof LENGTH_UNITS[0] };
+const LengthUnit LENGTH_UNITS[LENGTH_UNIT_COUNT] = {
+    {"m", 1.0f}, {"cm", 0.01f}, {"mm", 0.001f}, {"in", 0.0254f}};
 
 // The text form of each kind: `count` numbers of a type, separated by `separator`, or a form of its
 // own. The description of the kind is `before`, the range, `behind`; `behind` is NULL if there is

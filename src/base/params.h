@@ -197,6 +197,14 @@ typedef struct ParamInfo {
     const char *help;
 } ParamInfo;
 
+// Units of length that have a name.
+typedef struct LengthUnit {
+    const char *word;
+    float metres;
+} LengthUnit;
+enum { LENGTH_UNIT_COUNT = 4 };
+extern const LengthUnit LENGTH_UNITS[LENGTH_UNIT_COUNT];
+
 extern const ParamInfo PARAM_TABLE[];
 extern const size_t PARAM_COUNT;
 extern const char *const GROUP_TITLES[GROUP_COUNT];

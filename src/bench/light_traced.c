@@ -31,7 +31,7 @@ static Result take_section(const SectionParams *params, const Strands *strands, 
     float color[3];
     if (!is_plain(params, strands, hair))
         return error_set(error, RESULT_USAGE,
-                         "--way traced: a section has options that the path tracer does not "
+                         "the path tracer: a section has options that the path tracer does not "
                          "support: expected algo none, shading marschner, cone_angle 0, tip_ratio "
                          "1, opacity 1, color_variation 0 and warmth_variation 0, no followers, "
                          "and no colours, opacity or thickness from a file");
@@ -62,7 +62,7 @@ Result light_traced_draw(LightStage *stage, Image *image, int orders, int paths,
     Environment environment = {0}; // with its image, which assets need not keep
     if (has_mesh(&stage->assets))
         return error_set(error, RESULT_USAGE,
-                         "--way traced: the scene has a mesh: expected hair only");
+                         "the path tracer: the scene has a mesh: expected hair only");
     for (uint32_t i = 0; i < scene->section_count; ++i)
         TRY(take_section(&scene->sections[i].params, &stage->assets.strands[i],
                          &stage->simulation.sections[i].hair, &items[i], error));

@@ -309,12 +309,9 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
 static double guess_unit(Mesh *mesh)
 {
     static const double USUAL_SIZE = 0.8;
-    float low[3], high[3];
-    double square = 0, unit = 1;
-    mesh_bounds(mesh, low, high);
-    for (int k = 0; k < 3; ++k) square += pow((double)high[k] - (double)low[k], 2);
-    if (sqrt(square) > USUAL_SIZE * sqrt(1e2)) unit = 0.01;
-    if (sqrt(square) > USUAL_SIZE * sqrt(1e5)) unit = 0.001;
+    double size = mesh_diagonal(mesh), unit = 1;
+    if (size > USUAL_SIZE * sqrt(1e2)) unit = 0.01;
+    if (size > USUAL_SIZE * sqrt(1e5)) unit = 0.001;
     for (uint32_t v = 0; v < mesh->vertex_count; ++v)
         for (int k = 0; k < 3; ++k)
             mesh->position[v][k] = (float)(unit * (double)mesh->position[v][k]);

@@ -52,6 +52,15 @@ void mesh_bounds(const Mesh *mesh, float low[3], float high[3])
     }
 }
 
+double mesh_diagonal(const Mesh *mesh)
+{
+    float low[3], high[3];
+    double square = 0.0;
+    mesh_bounds(mesh, low, high);
+    for (int axis = 0; axis < 3; axis++) square += pow((double)high[axis] - (double)low[axis], 2);
+    return sqrt(square);
+}
+
 // The cross product of two edges has twice the area of the triangle as its length, so the sum is
 // weighted by area.
 void mesh_compute_normals(Mesh *mesh)

@@ -42,3 +42,5 @@ void mesh_compute_normals(Mesh *mesh);
 
 // The axis-aligned bounding box of all vertices; {0,0,0} twice for an empty mesh.
 void mesh_bounds(const Mesh *mesh, float low[3], float high[3]);
+// Its diagonal, in the unit of the positions.
+double mesh_diagonal(const Mesh *mesh);

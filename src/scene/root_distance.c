@@ -58,16 +58,7 @@ static double measure(Roots *roots, const Surface *surface, double scale)
     return roots->distance[roots->count / 2];
 }
 
-static double diagonal(const Mesh *mesh)
-{
-    float low[3], high[3];
-    double square = 0;
-    mesh_bounds(mesh, low, high);
-    for (int k = 0; k < 3; ++k) square += pow((double)high[k] - (double)low[k], 2);
-    return sqrt(square);
-}
-
-// Whether at least half of the roots have a vertex of the mesh within `reach`. This settles most
+// Whether more than half of the roots have a vertex of the mesh within `reach`. This settles most
 // meshes without a surface, which takes longer to make.
 static bool has_vertices_near(const Roots *roots, const Mesh *mesh, double reach)
 {
@@ -93,18 +84,15 @@ typedef struct Hint {
 static void find_unit(Hint *hint, bool of_mesh, Roots *roots, const Surface *surface, double size,
                       double unit)
 {
-    static const struct {
-        const char *word;
-        double metres;
-    } named[] = {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
     double least = APART;
-    for (size_t i = 0; i < sizeof named / sizeof *named; ++i) {
-        double scale = of_mesh ? named[i].metres / unit : unit / named[i].metres,
+    for (int i = 0; i < LENGTH_UNIT_COUNT; ++i) {
+        double metres = (double)LENGTH_UNITS[i].metres,
+               scale = of_mesh ? metres / unit : unit / metres,
                share = measure(roots, surface, scale) / (scale * size),
                odds = fabs(log((of_mesh ? scale : 1) * size / USUAL_SIZE));
         if (share > least || (hint->option && odds > hint->odds)) continue;
         least = share;
-        *hint = (Hint){of_mesh ? "--mesh-unit" : "--unit", named[i].word, odds};
+        *hint = (Hint){of_mesh ? "--mesh-unit" : "--unit", LENGTH_UNITS[i].word, odds};
     }
 }
 
@@ -136,7 +124,7 @@ Result root_distance_warn(const Scene *scene, uint32_t b, const Mesh *mesh, cons
     Roots roots = {0};
     Surface surface = {0};
     Result result = collect(&roots, scene, body, strands, error);
-    double size = diagonal(mesh);
+    double size = mesh_diagonal(mesh);
     if (result == RESULT_OK && roots.count && !has_vertices_near(&roots, mesh, APART * size)) {
         result = surface_create(&surface, mesh, body->params.mesh, error);
         if (result == RESULT_OK)

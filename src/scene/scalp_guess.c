@@ -72,16 +72,12 @@ static Result fit_sections(ScalpFit *fit, const Scene *scene, const SceneBody *b
 // unit if one is near.
 static void suggest_unit(FILE *messages, const char *place, const ScalpFit *fit, double unit)
 {
-    static const struct {
-        const char *word;
-        double metres;
-    } named[] = {{"m", 1}, {"in", 0.0254}, {"cm", 0.01}, {"mm", 0.001}};
     double wanted = unit * HEAD_RADIUS[0] / fit->radius[0];
     fprintf(messages, "%sthe scalp is %.2g m wide, a head's %.2g m: with --unit ", place,
             2 * fit->radius[0], 2 * HEAD_RADIUS[0]);
-    for (size_t i = 0; i < sizeof named / sizeof *named; ++i)
-        if (fabs(log(wanted / named[i].metres)) < log(UNLIKE)) {
-            fprintf(messages, "%s it is as wide\n", named[i].word);
+    for (int i = 0; i < LENGTH_UNIT_COUNT; ++i)
+        if (fabs(log(wanted / (double)LENGTH_UNITS[i].metres)) < log(UNLIKE)) {
+            fprintf(messages, "%s it is as wide\n", LENGTH_UNITS[i].word);
             return;
         }
     fprintf(messages, "%.2g it is as wide\n", wanted);

@@ -83,10 +83,10 @@ printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading
 run 0 light --reference "$work/traced" --case one --way "traced one,traced" --frames 1 --csv "$work/traced.csv"
 same "$(field "$work/traced.csv" way | sort | uniq -c | tr -s ' \n' ' ')" " 2 traced 2 traced one " "rows"
 same "$(field "$work/traced.csv" mean_r | awk '{ good += $1 > 0 } END { print good }')" 4 "images with light"
-run 2 light --reference "$work/own" --case one --way traced --frames 1; says "--way traced: a section has options that the path tracer does not support"; says "tip_ratio 1"
+run 2 light --reference "$work/own" --case one --way traced --frames 1; says "the path tracer: a section has options that the path tracer does not support"; says "tip_ratio 1"
 for other in "color_variation 0.1" "warmth_variation 0.1" "followers 2" "algo hybrid" "opacity 0.5"; do
     run 2 light --reference "$work/traced" --case one --way traced --frames 1 --render="--$(echo "$other" | tr _ -)"
-    says "--way traced: a section has options that the path tracer does not support"
+    says "the path tracer: a section has options that the path tracer does not support"
 done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/traced/triangle.obj"
 run 2 light --reference "$work/traced" --case one --way traced --frames 1 --render="--mesh $work/traced/triangle.obj"; says "expected hair only"
