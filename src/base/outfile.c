@@ -70,6 +70,8 @@ static Result find_place(Place *place, const char *path, Error *error)
         result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_LINK, path);
     else if (confined && !place_is_within(place, &claim->home))
         result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_OUTSIDE, path);
+    else if (confined && place->exists && !S_ISREG(place->file.st_mode))
+        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_NO_FILE, path);
     else if (place->exists)
         result = check_identity(path, &place->file, error);
     if (result != RESULT_OK) place_close(place);

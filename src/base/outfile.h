@@ -31,6 +31,8 @@ typedef struct OutFile {
 #define OUTFILE_IS_OUTSIDE "is outside the scene file's folder: " OUTFILE_ALLOWS
 #define OUTFILE_IS_LINK                                                                            \
     "is a symbolic link, which outputs of a scene file do not follow: " OUTFILE_ALLOWS
+#define OUTFILE_IS_NO_FILE                                                                         \
+    "is a device or a pipe, to which a scene file may not write: " OUTFILE_ALLOWS
 
 // Whether the path is "-", standard output.
 bool outfile_is_stdout(const char *path);
@@ -41,7 +43,7 @@ Result outfile_refuse_terminal(const char *path, Error *error);
 // Creates the temporary file and missing folders, with permissions by the umask, or opens standard
 // output directly. RESULT_FAILED with path and reason: a folder cannot be made, a folder has that
 // name, an existing file is read-only, ...; RESULT_USAGE for a file that the run reads or has
-// written; RESULT_BAD_INPUT for a link that must not be followed.
+// written; RESULT_BAD_INPUT for a link, device or pipe that an output of a scene file must not be.
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
 // The same, with new folders accessible only to the user (mode 0700); for caches.

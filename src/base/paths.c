@@ -186,8 +186,14 @@ static Result fail(const PathUse *use, int reason, Error *error)
                      strerror(reason));
 }
 
-// Checks an output that a scene file names: it must be within the scene file's folder and not a
-// link.
+// Whether a file that exists is a device or a pipe: a link that was not followed is none.
+static bool is_no_file(const struct stat *file)
+{
+    return !S_ISREG(file->st_mode) && !S_ISDIR(file->st_mode) && !S_ISLNK(file->st_mode);
+}
+
+// Checks an output that a scene file names: it must be within the scene file's folder, and neither
+// a link, nor a device or pipe.
 static Result check_home(const Spot *spot, const PathUse *use, struct stat *home, Error *error)
 {
     Place place;
@@ -198,9 +204,13 @@ static Result check_home(const Spot *spot, const PathUse *use, struct stat *home
     if (!place_is_within(&spot->place, home))
         return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s " OUTFILE_IS_OUTSIDE,
                          use->home, use->name, use->path);
-    if (!spot->place.is_link) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s " OUTFILE_IS_LINK, use->home,
-                     use->name, use->path);
+    if (spot->place.is_link)
+        return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s " OUTFILE_IS_LINK, use->home,
+                         use->name, use->path);
+    if (spot->exists && is_no_file(&spot->file))
+        return error_set(error, RESULT_BAD_INPUT, "%.300s: %s %.300s " OUTFILE_IS_NO_FILE,
+                         use->home, use->name, use->path);
+    return RESULT_OK;
 }
 
 // Checks a link that already exists under the name of one of the numbered files.

@@ -19,9 +19,11 @@
 #include "strands/strands.h"
 #include "strands/strands_read.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct Command {
     const char *unit, *to_unit, *output, *json, *array, *mesh, *mesh_unit; // NULL: not given
@@ -186,6 +188,17 @@ static Result parse_unit(const char *name, const char *text, float *metres, Erro
     return result == RESULT_OK ? result : error_prefix(error, result, "--%s: ", name);
 }
 
+// A last input that does not exist may be meant as the output: `tractrix-convert a.tfx b.abc`.
+static Result check_last(const Command *command, char **files, int count, Error *error)
+{
+    const char *last = files[count - 1];
+    if (command->output || count < 2 || strcmp(last, "-") == 0 || strchr(last, '%') ||
+        access(last, F_OK) == 0)
+        return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%.300s: %s: expected -o %.300s for an output", last,
+                     strerror(errno), last);
+}
+
 // Checks that no output overwrites an input or another output.
 static Result check_paths(const Command *command, char **files, int count, Error *error)
 {
@@ -268,6 +281,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     TRY(options_parse(&program, command, argc, argv, &first, done, error));
     if (*done) return RESULT_OK;
     TRY(check_sense(command, argc - first, error));
+    TRY(check_last(command, argv + first, argc - first, error));
     TRY(check_paths(command, argv + first, argc - first, error));
     TRY(parse_unit("unit", command->unit, &unit, error));
     TRY(parse_unit("to-unit", command->to_unit, &to_unit, error));

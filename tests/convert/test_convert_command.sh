@@ -250,6 +250,8 @@ for file in "$work/text" "$work/empty" "$work/cut.tfx" "$work/bad.obj" "$work/mi
     run 3 "$file" -o "$work/none.hair"; one_line; says "$file"; silent out; none "$work/none.hair"
 done
 
+run 3 $curls "$work/new.hair"; one_line; says "expected -o $work/new.hair for an output"; silent out; none "$work/new.hair"
+
 claim "what can't be written is status 1"
 run 1 $curls -o /proc/x.hair; one_line
 run 1 $curls $fur --format tfx4 -o "$work/none.tfx"; says "expected equal numbers in a binary TressFX file"; one_line; none "$work/none.tfx"

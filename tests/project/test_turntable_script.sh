@@ -138,6 +138,7 @@ claim "what it can't do is refused"
 run 2 -o; one_line; says "expected DIR"; run 2 --seconds x assets/fur.tfx; one_line; says "got 'x'"; run 2 --output= assets/fur.tfx; one_line
 run 2 sheet; one_line; says "no asset"
 run 2 assets/fur.tfx assets/ball.obj sheet; one_line; says "a second file: expected one ASSET (a mesh goes after --mesh"
+echo text >"$work/text"; run 2 assets/fur.tfx -o "$work/text"; one_line; says "is a file: expected a folder"
 run 2 assets/fur.tfx -o "$work/turn.mp4"; one_line; says "expected a folder; mp4 is the word for a format"; none "$work/turn.mp4"
 for wrong in "--colour red" "-q --colour red --size 16x16"; do
     # shellcheck disable=SC2086 # lists of words

@@ -68,6 +68,16 @@ END
 run 3 "$work/sc/own.json" --look plain --followers 0 --algo none --frames 200 --size 32x24 -q; refuses "frame_199.png" "is a symbolic link"
 wait; safe
 
+# A write to a pipe without a reader would wait for ever.
+claim "outputs of a scene file do not go to pipes"
+scene '"output": "piped/frame_%d.png"'
+mkdir "$work/sc/piped"; mkfifo "$work/sc/piped/frame_1.png"
+# shellcheck disable=SC2086
+run 3 "$work/sc/own.json" $small; refuses "frame_1.png" "is a device or a pipe"
+scene '"stats": "piped/frame_1.png"'
+# shellcheck disable=SC2086
+run 3 "$work/sc/own.json" $small -o "$work/t/"; refuses "frame_1.png" "is a device or a pipe"
+
 claim "a folder that is missing and .. behind it lead back"
 # shellcheck disable=SC2086
 {
