@@ -62,9 +62,9 @@ static const Option OPTIONS[] = {
      "image: none, approx or dom (default none)"},
     {"quality", 0, OPTION_STRING, AT(quality), "WORD", 0, 0,
      "image: preset normal, draft or final for options that are not given (default normal)"},
-    {"frames", 0, OPTION_WHOLE, AT(bench.frames), "N", 1, 1e6,
-     "image, light: number of measured images (default 15); a path tracer follows 8 paths a pixel "
-     "for each"},
+    {"frames", 0, OPTION_WHOLE, AT(bench.frames), "N", 0, 1e6,
+     "image, light: number of measured images (default 15; light: 0 measures no times); a path "
+     "tracer follows 8 paths a pixel for each"},
     {"no-error", 0, OPTION_SWITCH, AT(bench.no_error), NULL, 0, 0,
      "image: measure times only, not the error"},
     {"cases", 0, OPTION_WHOLE, AT(bench.stress.cases), "N", 1, 1e6,
@@ -199,6 +199,14 @@ Result bench_options_one_algo(const BenchOptions *options, Error *error)
     const char *algo = options->method.algo;
     if (!algo || !strchr(algo, ',')) return RESULT_OK;
     return error_set(error, RESULT_USAGE, "--algo: got '%s', expected one solver", algo);
+}
+
+Result bench_options_some_frames(const BenchOptions *options, Error *error)
+{
+    if (options->frames > 0) return RESULT_OK;
+    return error_set(
+        error, RESULT_USAGE,
+        "--frames: got 0, expected 1 or more: only light without a path tracer takes 0");
 }
 
 // --- Options whose values are names or lists.

@@ -43,7 +43,7 @@ typedef struct BenchOptions {
     StressOptions stress;           // all except its method
     int size[2];                    // image to draw in px; 0: none, or the usual size
     BenchScheme scheme;             // how hair is drawn
-    int frames;                     // measured images, >= 1, after two unmeasured ones
+    int frames;                     // measured images, >= 0, after two unmeasured ones
     bool no_error;                  // no exact image, which takes many seconds
     GpuOptions gpu;
     TableOutput output;
@@ -63,6 +63,9 @@ void bench_options_destroy(BenchOptions *options);
 
 // For commands that take one solver only: RESULT_USAGE if --algo lists several.
 Result bench_options_one_algo(const BenchOptions *options, Error *error);
+
+// Checks that there are images to measure, or paths to trace.
+Result bench_options_some_frames(const BenchOptions *options, Error *error);
 
 // Whether the command's part `name` is requested.
 bool bench_options_part(const BenchOptions *options, const char *name);

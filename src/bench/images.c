@@ -402,6 +402,7 @@ static Result add_rows(Table *table, const BenchOptions *options, const char *se
 Result images_run_one(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     Table table;
+    TRY(bench_options_some_frames(options, error));
     if (!options->set == !options->tfx)
         return error_set(error, RESULT_USAGE, "image: one of --set NAME and --tfx FILE is needed");
     Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
@@ -412,6 +413,7 @@ Result images_run_one(const BenchOptions *options, const Gpu *gpu, Error *error)
 Result images_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     Table table;
+    TRY(bench_options_some_frames(options, error));
     TRY(bench_options_check_parts(options, SETS, error));
     Result result = table_open(&table, TABLE_COLUMNS, gpu, &options->output, stdout, error);
     for (int i = 0; SETS[i]; ++i)

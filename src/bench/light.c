@@ -102,10 +102,10 @@ static Result open_stage(LightStage *stage, const Gpu *gpu, const LightCase *lit
 
 static Result time_frames(LightStage *stage, bool moved, int frames, Times *times, Error *error)
 {
-    double *samples = calloc((size_t)frames, sizeof *samples);
+    double *samples = calloc((size_t)frames + 1, sizeof *samples);
     if (!samples) return error_set(error, RESULT_FAILED, "no memory for %d samples", frames);
     Result result = RESULT_OK;
-    for (int i = -1; i < frames && result == RESULT_OK; ++i) {
+    for (int i = -(frames > 0); i < frames && result == RESULT_OK; ++i) {
         glFinish();
         double begin = clock_ms();
         result = light_stage_draw(stage, moved, error);
@@ -146,7 +146,8 @@ static Result measure_traced(LightStage *stage, const LightCase *lit, const Way 
     return RESULT_OK;
 }
 
-// Compares the first image, which is the image that a run of one frame writes. Then measures times.
+// Compares the first image, which is the image that a run of one frame writes. Then measures times,
+// which are NaN if FRAMES is 0.
 static Result measure(LightStage *stage, const LightCase *lit, const Way *way, int frames, Row *row,
                       Error *error)
 {
@@ -161,7 +162,7 @@ static Result measure(LightStage *stage, const LightCase *lit, const Way *way, i
     if (result == RESULT_OK) {
         row->moving_ms_min = moving.minimum, row->moving_ms_median = moving.median;
         row->still_ms_min = still.minimum, row->still_ms_median = still.median;
-        row->repeat = difference(&stage->image, first);
+        if (frames > 0) row->repeat = difference(&stage->image, first);
     }
     memcpy(stage->image.pixels, first, image_size(&stage->image));
     free(first);
@@ -403,7 +404,11 @@ static Result check_ways(const BenchOptions *options, Error *error)
 {
     const char *names[WAY_COUNT + 2] = {"all"};
     for (int w = 0; w < WAY_COUNT; ++w) names[w + 1] = WAYS[w].name;
-    return bench_options_check_list("--way", options->ways, names, error);
+    TRY(bench_options_check_list("--way", options->ways, names, error));
+    for (int w = 0; w < WAY_COUNT; ++w)
+        if (WAYS[w].orders && is_wanted(options, &WAYS[w]))
+            TRY(bench_options_some_frames(options, error));
+    return RESULT_OK;
 }
 
 static Result open_sheet(LightRun *run, Error *error)

@@ -65,6 +65,7 @@ Result trace_run(const BenchOptions *options, const Gpu *gpu, Error *error)
 {
     if (options->file_count == 0)
         return error_set(error, RESULT_USAGE, "trace: expected scene files");
+    TRY(bench_options_some_frames(options, error));
     for (int i = 0; i < options->file_count; ++i)
         TRY(trace(options, gpu, options->files[i], error));
     return RESULT_OK;

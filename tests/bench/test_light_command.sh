@@ -10,10 +10,11 @@ field() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == na
 same() { if [ "$1" = "$2" ]; then good; else bad "$3: got '$1', expected '$2'"; fi; }
 
 claim "single scattering and all light hold their bounds: fur in the sun, blond curls in sun and sky"
-run 0 light --case curls_blond_front,curls_blond_sky,fur_brown_side --way none,grid --frames 1 --csv "$work/a.csv" --json "$work/a.json"
+run 0 light --case curls_blond_front,curls_blond_sky,fur_brown_side --way none,grid --frames 0 --csv "$work/a.csv" --json "$work/a.json"
 same "$(field "$work/a.csv" verdict | grep -c holds)" 6 "rows that hold"
 same "$(field "$work/a.csv" way | sort | uniq -c | tr -s ' \n' ' ')" " 4 grid 4 none " "rows, and a mean for each way"
 same "$(grep -c '"mean_r"' "$work/a.json")" 8 "rows of JSON"
+same "$(field "$work/a.csv" still_ms_min | grep -c .)" 0 "times that --frames 0 leaves out"
 for way in none grid; do
     for name in coverage mean_r rel_b; do
         same "$(awk -F, -v way=$way -v name=$name '
@@ -28,7 +29,7 @@ claim "so do straight, parallel, dense hair against the light and under a sky"
 mkdir "$work/straight"
 cp tests/data/light_straight/* "$work/straight/"
 "$bin/tractrix-gen" --kind straight --shape head --count 6000 --vertices 24 --length 0.35 --seed 5 -q -o "$work/straight/straight6k.tfx"
-run 0 light --reference "$work/straight" --case straight_black_sky,straight_brown_back --way none,grid --frames 1 --csv "$work/straight.csv"
+run 0 light --reference "$work/straight" --case straight_black_sky,straight_brown_back --way none,grid --frames 0 --csv "$work/straight.csv"
 same "$(field "$work/straight.csv" verdict | grep -c holds)" 4 "rows of cases that hold"
 
 # Tables of 96 paths a pixel by --way traced, since Cycles's are wrong for this hair (docs/notes/straight_light.md).
@@ -36,17 +37,17 @@ same "$(field "$work/straight.csv" verdict | grep -c holds)" 4 "rows of cases th
 claim "the mean of straight blond hair is within 0.85 to 1.15 of our own path tracer's"
 mkdir "$work/blond"
 cp tests/data/light_traced/* "$work/straight/straight6k.tfx" "$work/blond/"
-run 1 light --reference "$work/blond" --way grid --frames 1 --csv "$work/blond.csv"
+run 1 light --reference "$work/blond" --way grid --frames 0 --csv "$work/blond.csv"
 for channel in r g b; do
     same "$(field "$work/blond.csv" mean_$channel | head -2 | awk '{ good += $1 > 0.85 && $1 < 1.15 } END { print good }')" 2 "means of $channel"
 done
 
 # Tables of 192 paths a pixel by tractrix-bench trace.
 claim "wide lights and environments hold the bounds of single scattering and of all light"
-run 0 light --reference tests/data/light_wide --case curls_blond_front5,curls_brown_back20,curls_blond_dusk,curls_black_dusk --way none,grid --frames 1 --csv "$work/wide.csv"
+run 0 light --reference tests/data/light_wide --case curls_blond_front5,curls_brown_back20,curls_blond_dusk,curls_black_dusk --way none,grid --frames 0 --csv "$work/wide.csv"
 same "$(field "$work/wide.csv" verdict | grep -c holds)" 8 "rows of cases that hold"
 # The rel of single scattering is 0.164, above the bound of 0.16.
-run 1 light --reference "$work/blond" --case straight_brown_back20 --way none,grid --frames 1 --csv "$work/wide.csv"
+run 1 light --reference "$work/blond" --case straight_brown_back20 --way none,grid --frames 0 --csv "$work/wide.csv"
 for channel in r g b; do
     same "$(field "$work/wide.csv" mean_$channel | head -2 | awk '{ good += $1 > 0.92 && $1 < 1.12 } END { print good }')" 2 "means of $channel in straight hair"
 done
@@ -54,7 +55,7 @@ done
 # With 8 cells the means are off by 2.5 %, equally with both. Measured differences: up to 0.0027.
 claim "both rasterisers show the same light and cover the same"
 for raster in quads blocks; do
-    run 0 light --case fur_brown_side --way grid --raster $raster --frames 1 --render='--scatter-cells 8' --csv "$work/$raster.csv"
+    run 0 light --case fur_brown_side --way grid --raster $raster --frames 0 --render='--scatter-cells 8' --csv "$work/$raster.csv"
     same "$(field "$work/$raster.csv" raster | head -1)" $raster "rasteriser"
 done
 for name in coverage mean_r mean_g mean_b; do
@@ -76,6 +77,8 @@ cp "$work/own/one.json" "$work/own/scene.json"
 run 1 light --reference "$work/own" --way none --frames 1 --picture "$work/own.png" --csv "$work/own_rows.csv"
 says "scene.json: not a case"; says "bounds are broken"; is_png "$work/own.png"
 same "$(field "$work/own_rows.csv" scene | tr '\n' ' ')" "one mean " "cases"
+same "$(field "$work/own_rows.csv" still_ms_min | awk '{ good += $1 > 0 } END { print good }')" 2 "rows with times"
+same "$(field "$work/own_rows.csv" repeat | awk '{ good += $1 < 1e-5 } END { print good }')" 2 "images that are drawn again at rest"
 
 claim "our own path tracer draws a case only where it is named, and only hair that it knows"
 cp -r "$work/own" "$work/traced"
@@ -103,6 +106,7 @@ same "$(cmp "$work/trace/one.csv" "$work/first_table.csv" && echo same)" same "t
 run 0 light --reference "$work/trace" --way "traced one,traced" --frames 1 --csv "$work/again.csv"
 same "$(field "$work/again.csv" rel_g | awk '{ good += $1 < 1e-3 } END { print good }')" 4 "images that are the table's"
 run 2 trace; says "trace: expected scene files"
+run 2 trace "$work/trace/one.json" --frames 0; says "--frames: got 0"
 run 2 trace "$work/trace/hair.tfx"; says "expected a scene file NAME.json"
 sed 's/"size": \[16, 16\]/"size": [16, 20]/' "$work/trace/one.json" >"$work/trace/odd.json"
 run 3 trace "$work/trace/odd.json"; says "the image has 16x20 pixels: expected multiples of 8"
@@ -144,5 +148,6 @@ run 2 light --case fur_brown_sid; says "no case 'fur_brown_sid'"; says_once
 run 2 light --way gird; says "no way 'gird'"; says "grid"; says_once
 run 2 light --case fur_brown_side --render=--no-such-flag; says "--no-such-flag"; says_once
 run 2 light --case fur_brown_side --before "$work"; says "--picture"; says_once
+run 2 light --case fur_brown_side --way traced --frames 0; says "--frames: got 0, expected 1 or more"; says_once
 
 finish
