@@ -35,7 +35,8 @@ MISSING   := $(shell for p in $(LIBRARIES) $(HEADERS); do pkg-config --exists $$
 
 OPTIMISE_release  := -O2 -DNDEBUG
 OPTIMISE_debug    := -O0 -g3 -DTRACTRIX_DEBUG
-OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer
+# -g1: reports name functions and lines; all of -g would double the time to compile src/lanes.
+OPTIMISE_sanitize := -O1 -g1 -fno-omit-frame-pointer
 SANITIZE_sanitize := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 OPTIMISE_coverage := -O1 -g
 SANITIZE_coverage := --coverage -fprofile-update=atomic

@@ -24,17 +24,22 @@ SimdLevel simd_level(void);
 // Function attributes for each level; empty except on x86.
 #define SIMD_FOR_ANY
 #if defined __x86_64__
-#define SIMD_FOR_AVX2 __attribute__((target("avx2,fma")))
-#if defined __SANITIZE_ADDRESS__
-// GCC 12 aligns the frames that AddressSanitizer keeps after a return to 32 bytes only, and stores
-// vectors of 64 bytes there as if they were aligned (GCC bug 110027).
-#define SIMD_FOR_AVX512 SIMD_FOR_AVX2
-#else
+#define SIMD_FOR_AVX2   __attribute__((target("avx2,fma")))
 #define SIMD_FOR_AVX512 __attribute__((target("avx2,fma,avx512vl,avx512dq,avx512bw")))
-#endif
 #else
 #define SIMD_FOR_AVX2
 #define SIMD_FOR_AVX512
+#endif
+
+// SIMD_WITH_AVX512(code): code for SIMD_AVX512; SIMD_AVX512_OF(name): name_avx512. AddressSanitizer
+// takes the version for AVX2: GCC 12 aligns the frames that it keeps after a return to 32 bytes
+// only, and stores vectors of 64 bytes there as if they were aligned (GCC bug 110027).
+#if defined __SANITIZE_ADDRESS__
+#define SIMD_WITH_AVX512(...)
+#define SIMD_AVX512_OF(name) name##_avx2
+#else
+#define SIMD_WITH_AVX512(...) __VA_ARGS__
+#define SIMD_AVX512_OF(name)  name##_avx512
 #endif
 
 #define SIMD_INLINE static inline __attribute__((always_inline))
@@ -50,14 +55,13 @@ SimdLevel simd_level(void);
     {                                                                                              \
         name((const type *)data, part);                                                            \
     }                                                                                              \
-    SIMD_FOR_AVX512 static void name##_avx512(void *data, int part)                                \
-    {                                                                                              \
+    SIMD_WITH_AVX512(SIMD_FOR_AVX512 static void name##_avx512(void *data, int part) {             \
         name((const type *)data, part);                                                            \
-    }                                                                                              \
+    })                                                                                             \
     static void run_##name(type *data, int parts)                                                  \
     {                                                                                              \
         static void (*const versions[SIMD_LEVELS])(void *, int) = {name##_any, name##_avx2,        \
-                                                                   name##_avx512};                 \
+                                                                   SIMD_AVX512_OF(name)};          \
         parallel_run(parts, versions[simd_level()], data);                                         \
     }
 
@@ -71,14 +75,12 @@ SimdLevel simd_level(void);
     {                                                                                              \
         name(data, 0);                                                                             \
     }                                                                                              \
-    SIMD_FOR_AVX512 static void name##_avx512(const type *data)                                    \
-    {                                                                                              \
-        name(data, 0);                                                                             \
-    }                                                                                              \
+    SIMD_WITH_AVX512(                                                                              \
+        SIMD_FOR_AVX512 static void name##_avx512(const type *data) { name(data, 0); })            \
     static void call_##name(const type *data)                                                      \
     {                                                                                              \
         static void (*const versions[SIMD_LEVELS])(const type *) = {name##_any, name##_avx2,       \
-                                                                    name##_avx512};                \
+                                                                    SIMD_AVX512_OF(name)};         \
         versions[simd_level()](data);                                                              \
     }
 

@@ -531,16 +531,18 @@ typedef void Composite(const Block *block, const Ribbons *ribbons, const uint64_
     COMPOSITE(name##_open, BLOCK_OPEN, level, target)                                              \
     COMPOSITE(name##_over_mesh, BLOCK_OVER_MESH, level, target)                                    \
     COMPOSITE(name##_nearest, BLOCK_NEAREST, level, target)                                        \
-    static Composite *const name[BLOCK_FORMS] = {name##_open, name##_over_mesh, name##_nearest};
+    static Composite *const forms_##name[BLOCK_FORMS] = {name##_open, name##_over_mesh,            \
+                                                         name##_nearest};
 
 COMPOSITES(any, SIMD_ANY, SIMD_FOR_ANY)
 COMPOSITES(avx2, SIMD_AVX2, SIMD_FOR_AVX2)
-COMPOSITES(avx512, SIMD_AVX512, SIMD_FOR_AVX512)
+SIMD_WITH_AVX512(COMPOSITES(avx512, SIMD_AVX512, SIMD_FOR_AVX512))
 
 void composite_block_on(SimdLevel level, const Block *block, BlockForm form, const Ribbons *ribbons,
                         const uint64_t *order, size_t count, CompositeScratch *scratch)
 {
-    static Composite *const *const versions[SIMD_LEVELS] = {any, avx2, avx512};
+    static Composite *const *const versions[SIMD_LEVELS] = {forms_any, forms_avx2,
+                                                            SIMD_AVX512_OF(forms)};
     versions[level][form](block, ribbons, order, count, scratch);
 }
 

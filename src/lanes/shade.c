@@ -506,11 +506,11 @@ SIMD_FOR_AVX2 static void shade_points_avx2(const Shader *shader, const uint32_t
 {
     shade_points(shader, points, count);
 }
-SIMD_FOR_AVX512 static void shade_points_avx512(const Shader *shader, const uint32_t *points,
-                                                int count)
-{
+SIMD_WITH_AVX512(SIMD_FOR_AVX512 static void shade_points_avx512(const Shader *shader,
+                                                                 const uint32_t *points,
+                                                                 int count) {
     shade_points(shader, points, count);
-}
+})
 
 ShadePoints *const shade_points_on[SIMD_LEVELS] = {shade_points_any, shade_points_avx2,
-                                                   shade_points_avx512};
+                                                   SIMD_AVX512_OF(shade_points)};
