@@ -34,12 +34,16 @@ SimdLevel simd_level(void);
 // SIMD_WITH_AVX512(code): code for SIMD_AVX512; SIMD_AVX512_OF(name): name_avx512. AddressSanitizer
 // takes the version for AVX2: GCC 12 aligns the frames that it keeps after a return to 32 bytes
 // only, and stores vectors of 64 bytes there as if they were aligned (GCC bug 110027).
+// SIMD_ALIGNED: for structs of arrays of lanes. A vector of 64 bytes that crosses a cache line is
+// slower to load and store.
 #if defined __SANITIZE_ADDRESS__
 #define SIMD_WITH_AVX512(...)
 #define SIMD_AVX512_OF(name) name##_avx2
+#define SIMD_ALIGNED         __attribute__((aligned(32)))
 #else
 #define SIMD_WITH_AVX512(...) __VA_ARGS__
 #define SIMD_AVX512_OF(name)  name##_avx512
+#define SIMD_ALIGNED          __attribute__((aligned(64)))
 #endif
 
 #define SIMD_INLINE static inline __attribute__((always_inline))

@@ -39,7 +39,7 @@ typedef struct Linear {
 } Linear;
 
 // A batch of ribbons, as a structure of arrays.
-typedef struct Batch {
+typedef struct SIMD_ALIGNED Batch {
     float x[4][BATCH], y[4][BATCH], near_at[4][BATCH]; // previous point, both ends, next point
     float opacity[BATCH];
     uint32_t point[2][BATCH];                 // indices of the ends among all points
@@ -64,7 +64,7 @@ typedef struct __attribute__((aligned(32))) Laid {
 } Laid;
 
 // Ribbons that wait for their colours, and what is visible of them.
-typedef struct Waiting {
+typedef struct SIMD_ALIGNED Waiting {
     Laid laid[LAID];
     Touch touches[LAID];
     uint8_t seen[WAITING];
@@ -142,7 +142,7 @@ SIMD_INLINE int cell_of(float px, int size, int cell)
 
 // Unit directions of the previous ribbon, the ribbon itself and the next ribbon; 0 if there is
 // none.
-typedef struct RibbonWays {
+typedef struct SIMD_ALIGNED RibbonWays {
     float x[3][BATCH], y[3][BATCH];
 } RibbonWays;
 

@@ -27,7 +27,7 @@ SIMD_INLINE void grid_turn_tangents(const float eye[3], const float axis[3],
 // The place of 16 points among cells and tangents. For each axis: the cells before and behind each
 // point, as the part of the cell's number that belongs to this axis, and their weights. Then the
 // number of the point's own cell, and the place of its tangent in its patch.
-typedef struct GridPlaces {
+typedef struct SIMD_ALIGNED GridPlaces {
     int cell[3][2][STRAND_TILE], own[STRAND_TILE];
     float share[3][2][STRAND_TILE];
     int patch[STRAND_TILE], node[STRAND_TILE];

@@ -35,14 +35,14 @@ void shades_destroy(Shades *shades)
 
 // --- The places of 16 points.
 
-typedef struct Spots {
-    const LaneHair *hair;
-    int count;                    // lanes behind it repeat the last point
+typedef struct SIMD_ALIGNED Spots {
     uint32_t strand[W], point[W]; // index of the strand in the batch, of the point on the strand
     float x[3][W], tangent[3][W], to_eye[3][W];
     float radius[W], opacity[W]; // m; opacity for light
     float color[3][W];           // the strand's colour at the point
     uint32_t hash[W];            // decides the strand's brightness
+    const LaneHair *hair;
+    int count; // lanes behind it repeat the last point
 } Spots;
 
 SIMD_INLINE void find_spots(const LaneHair *hair, const uint32_t *points, int count, Spots *s)
@@ -123,7 +123,7 @@ SIMD_INLINE void find_strands(const LaneLight *light, Spots *s)
 
 // The light from one lamp at 16 points: unit vectors towards the lamp, and the share of its colour
 // that arrives.
-typedef struct Coming {
+typedef struct SIMD_ALIGNED Coming {
     float way[3][W], share[W];
 } Coming;
 
@@ -133,7 +133,7 @@ SIMD_INLINE float dot3(float a[3][W], float b[3][W], int i)
 }
 
 // Sine and cosine of the eye's inclination, and the same tilted for each lobe.
-typedef struct Eye {
+typedef struct SIMD_ALIGNED Eye {
     float sine[W], cosine[W];
     float tilted_sine[3][W], tilted_cosine[3][W]; // theta_r tilted for R, TT, TRT
 } Eye;
@@ -212,7 +212,7 @@ SIMD_INLINE void find_left(const LaneLight *light, const Spots *s, float left[MA
 
 // The geometry of a light and the eye at 16 points: the longitudinal factors, and the place in the
 // azimuthal table.
-typedef struct Beams {
+typedef struct SIMD_ALIGNED Beams {
     float along[3][W];    // longitudinal factor M of R, TT, TRT
     float azimuth[W];     // 0 .. 1 for 0 .. pi
     float inclination[W]; // cosine of theta_d
@@ -221,7 +221,7 @@ typedef struct Beams {
 enum { AZIMUTHS = SCATTER_AZIMUTHS, NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS };
 
 // The four table nodes around each place, and their weights.
-typedef struct Nodes {
+typedef struct SIMD_ALIGNED Nodes {
     int first[W];
     float share[4][W]; // first, next azimuth, and the same two at the next inclination
 } Nodes;
@@ -242,7 +242,7 @@ SIMD_INLINE void find_nodes(const Beams *beams, Nodes *nodes)
 }
 
 // The slice of the section's table for each strand, and the strand's colour over the slice's.
-typedef struct Tints {
+typedef struct SIMD_ALIGNED Tints {
     int slice[W];
     float through[3][W];
 } Tints;

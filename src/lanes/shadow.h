@@ -60,7 +60,7 @@ Result lane_shadow_draw(LaneShadow *shadow, const LaneShadowScene *scene, Error 
 enum { SHADOW_LOOK = STRAND_TILE }; // points
 
 // Positions of points in a map of hair; `inside`: rays to the light cross the map, in front of it.
-typedef struct ShadowLook {
+typedef struct SIMD_ALIGNED ShadowLook {
     float u[SHADOW_LOOK], v[SHADOW_LOOK], z[SHADOW_LOOK], inside[SHADOW_LOOK];
 } ShadowLook;
 

@@ -11,7 +11,7 @@
 static const float MOST = 7500; // most points of a wide segment, as in shadow_splat.comp
 
 // Segments of a tile's strands as rows of points: `count` points beginning at (u, v, z).
-typedef struct Points {
+typedef struct SIMD_ALIGNED Points {
     float u[W], v[W], z[W], step_u[W], step_v[W], step_z[W];
     float along[W], width[W];
     uint32_t part[W]; // see caster_part
@@ -85,10 +85,10 @@ SIMD_INLINE Spot find_spot(const Points *points, int k, int turn, float edge)
 // A queue of points to add. Their places are computed beforehand, so that the additions do not wait
 // for each other.
 enum { QUEUE = 2048 };
-typedef struct Queue {
-    int count;
+typedef struct SIMD_ALIGNED Queue {
     int place[QUEUE];
     uint32_t part[QUEUE];
+    int count;
 } Queue;
 
 // The data of one drawing thread.

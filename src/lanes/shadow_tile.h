@@ -11,7 +11,7 @@
 enum { W = STRAND_TILE, LAYERS = SHADOW_LAYERS };
 
 // The place of a point of each strand as the light sees it, and its radius (m).
-typedef struct Places {
+typedef struct SIMD_ALIGNED Places {
     float u[W], v[W], z[W], w[W], radius[W];
 } Places;
 
@@ -40,7 +40,7 @@ SIMD_INLINE void find_ways(const Tile *tile, int j, float ways[3][W])
 
 // A segment of the curves through a tile's strands: its first end, the vectors before, along and
 // after it, and the part of Hermite's weights that all of its points share.
-typedef struct CurveSegment {
+typedef struct SIMD_ALIGNED CurveSegment {
     float start[3][W], ways[3][3][W];
     float before[W], from[W], to[W], after[W]; // CurveKnots
 } CurveSegment;
