@@ -220,11 +220,12 @@ SIMD_INLINE void place(const Place *all, int part)
     Segments s;
     Lefts left = {0};
     const LaneShadow *shadow = state->field.lights ? all->scene->shadow : NULL;
+    uint step = light_field_step(all->scene);
     for (uint32_t h = 0; h < all->scene->hair_count; ++h) {
         const GridHair *hair = &all->scene->hair[h];
-        grid_turn_range(all->scene, hair, part, state->parts, range);
+        grid_turn_range(hair, step, part, state->parts, range);
         for (int turn = range[0]; turn < range[1]; ++turn) {
-            grid_open_strands(all->scene, hair, turn, &strands);
+            grid_open_strands(hair, step, turn, &strands);
             grid_turn_points(&state->field.lattice, &strands, 0, s.b);
             if (all->emit && shadow) find_left(shadow, &strands, 0, left.at[0]);
             for (int j = 0; j + 1 < (int)hair->caster.material.vertex_count; ++j) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Finds the box of hair, which the cells of a light grid fill.
+// Finds the box of hair, which the cells of a light grid fill. It is the box of all strands, even
+// if some of them represent all in the cells: otherwise a single long strand would decide where the
+// cells lie, and the light would change with the choice of strands.
 #include "lanes/light_grid_tile.h"
 
 #include <math.h>
@@ -43,9 +45,9 @@ SIMD_INLINE void find_box(const FindBox *find, int part)
         for (int i = 0; i < W; ++i) box[k][i] = k < 3 ? 1e30f : k < 6 ? -1e30f : 0;
     for (uint32_t h = 0; h < find->scene->hair_count; ++h) {
         const GridHair *hair = &find->scene->hair[h];
-        grid_turn_range(find->scene, hair, part, find->state->parts, range);
+        grid_turn_range(hair, 1, part, find->state->parts, range);
         for (int turn = range[0]; turn < range[1]; ++turn) {
-            grid_open_strands(find->scene, hair, turn, &strands);
+            grid_open_strands(hair, 1, turn, &strands);
             for (int j = 0; j < (int)hair->caster.material.vertex_count; ++j) {
                 grid_turn_points(&find->state->field.lattice, &strands, j, points[j % 2]);
                 widen(box, points[j % 2], (const float(*)[W])points[(j + 1) % 2], j == 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The strands that represent all hair in the cells of a light grid, 16 at once, one for each lane.
-// For light_grid_lattice.c and light_grid_items.c.
+// Strands for a light grid, 16 at once, one for each lane: one of each group of `step` strands,
+// which represents the group (kernel/cell.h). For light_grid_lattice.c and light_grid_items.c.
 #pragma once
 
 #include "lanes/light_grid_state.h"
@@ -16,19 +16,16 @@ typedef struct GridStrands {
 } GridStrands;
 
 // The number of groups of 16 strands of a batch.
-static inline int grid_turns(const GridScene *scene, const GridHair *hair)
+static inline int grid_turns(const GridHair *hair, uint step)
 {
-    return (
-        int)((cell_strands(hair->caster.material.drawn_strands, light_field_step(scene)) + W - 1) /
-             W);
+    return (int)((cell_strands(hair->caster.material.drawn_strands, step) + W - 1) / W);
 }
 
-static inline void grid_open_strands(const GridScene *scene, const GridHair *hair, int turn,
+static inline void grid_open_strands(const GridHair *hair, uint step, int turn,
                                      GridStrands *strands)
 {
     const MaterialParams *m = &hair->caster.material;
-    uint step = light_field_step(scene), count = cell_strands(m->drawn_strands, step),
-         first = (uint)turn * W;
+    uint count = cell_strands(m->drawn_strands, step), first = (uint)turn * W;
     strands->hair = hair;
     strands->strands = count - first < W ? (int)(count - first) : W;
     for (uint i = 0; i < W; ++i) {
@@ -60,10 +57,10 @@ SIMD_INLINE void grid_turn_points(const LightLattice *lattice, const GridStrands
 }
 
 // The groups that one of `parts` threads works on, from range[0] to before range[1].
-static inline void grid_turn_range(const GridScene *scene, const GridHair *hair, int part,
-                                   int parts, int range[2])
+static inline void grid_turn_range(const GridHair *hair, uint step, int part, int parts,
+                                   int range[2])
 {
-    int64_t turns = grid_turns(scene, hair);
+    int64_t turns = grid_turns(hair, step);
     range[0] = (int)(turns * part / parts);
     range[1] = (int)(turns * (part + 1) / parts);
 }

@@ -185,7 +185,7 @@ Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCas
                                          INT32_MIN, INT32_MIN, 0};
     TRY(upload_classes(passes, error));
     light_field_find_turn(&passes->field, scene);
-    LightParams params = {.step = light_field_step(scene)};
+    LightParams params = {.step = 1}; // the box of all strands
     for (int k = 0; k < 3; ++k)
         memcpy(params.turn[k], passes->field.lattice.turn[k], 3 * sizeof(float));
     gpu_uniforms_set(BIND_LIGHT, &params, sizeof params);
@@ -195,7 +195,7 @@ Result light_passes_begin(LightPasses *passes, const GridScene *scene, ShadowCas
     TRY(light_pass_use(&passes->programs, LIGHT_PASS_BOX, 0, error));
     gpu_buffer_bind_storage(&passes->box, BIND_LIGHT_BOX_OUT);
     for (uint32_t i = 0; i < casters.count; ++i)
-        light_pass_run_hair(&passes->programs, &casters.list[i], light_field_step(scene),
+        light_pass_run_hair(&passes->programs, &casters.list[i], params.step,
                             casters.list[i].batch->vertex_count, LIGHT_PART_VERTICES);
     TRY(late_read_begin(&passes->box_read, "the box of hair", sizeof none, error));
     late_read_buffer(&passes->box_read, 0, &passes->box, sizeof none);
