@@ -52,9 +52,8 @@ static void move(RecordedCase *recorded, RecordedNumbers *numbers)
 }
 
 // With llvmpipe, motions with vectors of 128 bits and on a processor with SSE2 only differ from the
-// recorded ones by at most 0.074 of 1e-4 of a value and 1e-4 of the root mean square together;
-// these limits are four times that. Other drivers round otherwise, and collisions multiply the
-// difference.
+// recorded ones by at most 7.4e-6 of a value plus 7.4e-6 of the root mean square; these limits are
+// four times that. Other drivers round otherwise, and collisions multiply the difference.
 static const RecordedLimits LIMITS = {3e-5f, 3e-5f, 0.05f, 0.02f};
 
 static void test_motion(void **state)

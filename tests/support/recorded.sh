@@ -2,6 +2,12 @@
 # shellcheck shell=bash
 # Sourced by tests of recorded texts: recorded_check SET compares what the commands of tests/data/recorded/SET.txt print
 # (scripts/recorded-text) with tests/data/recorded/SET.out, a test for each command.
+#
+# recorded_platform FOLDER: the platform of the programs there, and the maker of the processor.
+recorded_platform() {
+    echo "$("$1/tractrix-render" --platform) $(awk '/^vendor_id/ { print $3; exit }' /proc/cpuinfo)"
+}
+
 recorded_check() {
     local set=$1 passed=0 failed=0 now old name
     now=$(mktemp -d)
