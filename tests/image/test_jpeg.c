@@ -74,6 +74,20 @@ static void a_picture_survives(void **state)
     }
 }
 
+// Noise hardly compresses, so the file grows many times while it is written.
+static void a_large_file_is_whole(void **state)
+{
+    (void)state;
+    Image image;
+    size_t size;
+    assert_int_equal(image_create(&image, 512, 512, 3, NULL), RESULT_OK);
+    for (size_t i = 0; i < image_size(&image); i += 3)
+        memset(image.pixels + i, (int)(i * 2654435761u >> 16 & 255), 3);
+    assert_true(rms_of(&image, JPEG_FINE, &size) < 4);
+    assert_true(size > 100000);
+    image_destroy(&image);
+}
+
 static void what_it_cannot_hold_is_refused(void **state)
 {
     (void)state;
@@ -109,7 +123,8 @@ static void it_is_not_measured(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_picture_survives), cmocka_unit_test(what_it_cannot_hold_is_refused),
+        cmocka_unit_test(a_picture_survives), cmocka_unit_test(a_large_file_is_whole),
+        cmocka_unit_test(what_it_cannot_hold_is_refused),
         cmocka_unit_test_setup_teardown(it_is_not_measured, temporary_create, temporary_destroy)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

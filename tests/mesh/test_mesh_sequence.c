@@ -154,13 +154,14 @@ static void add_array(ZipWriter *zip, const char *name, const char *type, const 
     zip_add(zip, name, header, head, data, size);
 }
 
-// `faces`: number of corners per face; coordinates in millimetres, z up.
-static const char *write_npz(void **state, const char *name, uint32_t last_corner, bool bad)
+// Coordinates in millimetres, z up. `broken`: a third triangle begins with a corner that is
+// missing; `bad`: a negative unit.
+static const char *write_npz(void **state, const char *name, bool broken, bool bad)
 {
     int16_t points[2][3][3] = {{{0}}};
-    const int32_t faces[3] = {0, 1, (int32_t)last_corner};
+    const int32_t faces[3][3] = {{0, 1, 2}, {0, 1, 2}, {3, 1, 2}};
     const double fps = 12, unit = bad ? -1 : 1;
-    const uint64_t shape[3] = {2, 3, 3}, face_shape[2] = {1, 3};
+    const uint64_t shape[3] = {2, 3, 3}, face_shape[2] = {broken ? 3 : 1, 3};
     const char up[4] = {'z', 0, 0, 0};
     for (int i = 0; i < 6; ++i) { // with z up, (x, y, z) becomes (x, -z, y)
         const float *p = ((const float(*)[3])SAMPLES)[i];
@@ -172,7 +173,7 @@ static const char *write_npz(void **state, const char *name, uint32_t last_corne
     assert_int_equal(outfile_open(&file, path, NULL), RESULT_OK);
     ZipWriter zip = {.out = &file};
     add_array(&zip, "positions.npy", "<i2", shape, 3, points, sizeof points);
-    add_array(&zip, "faces.npy", "<i4", face_shape, 2, faces, sizeof faces);
+    add_array(&zip, "faces.npy", "<i4", face_shape, 2, faces, face_shape[0] * sizeof *faces);
     add_array(&zip, "fps.npy", "<f8", shape, 0, &fps, sizeof fps);
     add_array(&zip, "unit.npy", "<f8", shape, 0, &unit, sizeof unit);
     add_array(&zip, "up.npy", "<U1", shape, 0, up, sizeof up);
@@ -183,18 +184,19 @@ static const char *write_npz(void **state, const char *name, uint32_t last_corne
 
 static void arrays_of_numpy_say_faces_rate_unit_and_axes(void **state)
 {
-    expect(write_npz(state, "a.npz", 2, false), &OPTIONS, NULL);
-    expect(write_npz(state, "b.npz", 3, false), &OPTIONS,
-           "triangle 0 has corner 3: expected less than 3");
-    expect(write_npz(state, "c.npz", 2, true), &OPTIONS, "'unit': expected one number");
+    expect(write_npz(state, "a.npz", false, false), &OPTIONS, NULL);
+    expect(write_npz(state, "b.npz", true, false), &OPTIONS,
+           "triangle 2 has corner 3: expected less than 3");
+    expect(write_npz(state, "c.npz", false, true), &OPTIONS, "'unit': expected one number");
     MeshSequence sequence;
     Mesh mesh;
     Error error;
     MeshSequenceOptions options = OPTIONS;
     options.unit = 2; // the user's options take precedence over the file
     options.rate = 7;
-    assert_int_equal(read(&sequence, &mesh, write_npz(state, "a.npz", 2, false), &options, &error),
-                     RESULT_OK);
+    assert_int_equal(
+        read(&sequence, &mesh, write_npz(state, "a.npz", false, false), &options, &error),
+        RESULT_OK);
     assert_true(sequence.times.rate == 7 && mesh.position[1][0] == 2);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&mesh);
