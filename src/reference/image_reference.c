@@ -477,6 +477,15 @@ static void sort_by_sample(Row *row)
         }
 }
 
+static bool has_hits(const Row *row, int x)
+{
+    for (int i = 0; i < row->side; ++i) {
+        int sample = (i * row->width + x) * row->side;
+        if (row->first[sample] != row->first[sample + row->side]) return true;
+    }
+    return false;
+}
+
 // The mean over the pixel; linear, premultiplied.
 static void average_pixel(const Row *row, int x, const double background[4], double mean[4])
 {
@@ -492,13 +501,18 @@ static void average_pixel(const Row *row, int x, const double background[4], dou
     }
 }
 
+// All pixels without hits have the same mean, which is found once a row.
 static void write_row(const Row *row, const double background[4], Image *image)
 {
+    double empty[4];
+    bool found = false;
     for (int x = 0; x < image->width; ++x) {
         double mean[4];
         uint8_t *pixel = image->pixels + ((size_t)row->row * (size_t)image->width + (size_t)x) *
                                              (size_t)image->channels;
-        average_pixel(row, x, background, mean);
+        bool has = has_hits(row, x);
+        if (has || !found) average_pixel(row, x, background, has ? mean : empty);
+        if (!has) found = true, memcpy(mean, empty, sizeof mean);
         double alpha = image->channels == 4 ? mean[3] : 1;
         for (int k = 0; k < 3; ++k)
             pixel[k] = (uint8_t)lrint(255 * image_srgb_from_linear(mean[k] / fmax(alpha, 1e-9)));
