@@ -15,12 +15,33 @@
 
 #include <cmocka.h>
 
-enum { FPS = 60 };
+enum { FPS = 60, FEW = 1000, MANY = 2000 };
+
+// The hair of all worlds, grown once: growing it takes as long as 20 steps.
+static Strands few, many;
+
+static int grow_hair(void **state)
+{
+    (void)state;
+    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_STRAIGHT);
+    recipe.count = FEW, recipe.vertices = 24, recipe.length = 0.5f;
+    if (strands_make(&few, &recipe, NULL) != RESULT_OK) return -1;
+    recipe.count = MANY;
+    return strands_make(&many, &recipe, NULL) == RESULT_OK ? 0 : -1;
+}
+
+static int release_hair(void **state)
+{
+    (void)state;
+    strands_destroy(&few);
+    strands_destroy(&many);
+    return 0;
+}
 
 // One section of long straight hair, 60 steps a second.
 typedef struct World {
     Scene scene;
-    Strands strands;
+    const Strands *strands;
     GpuTimer timer;
     Simulation simulation;
 } World;
@@ -28,12 +49,11 @@ typedef struct World {
 typedef float Float3[3];
 typedef float Float4[4];
 
-static void start(World *world, const Gpu *gpu, const char *algo, float volume, float style,
-                  const char *colliders)
+static void start_with(World *world, const Strands *strands, const Gpu *gpu, const char *algo,
+                       float volume, float style, const char *colliders)
 {
     SectionParams params;
-    StrandsRecipe recipe = strands_make_recipe(STRANDS_STYLE_STRAIGHT);
-    *world = (World){0};
+    *world = (World){.strands = strands};
     assert_int_equal(scene_create(&world->scene, NULL), RESULT_OK);
     assert_int_equal(params_create_section(&params, NULL), RESULT_OK);
     assert_int_equal(params_parse(params_find("algo"), &params, algo, NULL), RESULT_OK);
@@ -46,19 +66,22 @@ static void start(World *world, const Gpu *gpu, const char *algo, float volume, 
     if (*colliders)
         assert_int_equal(colliders_parse(&world->scene.bodies[0].colliders, colliders, NULL),
                          RESULT_OK);
-    recipe.count = 2000, recipe.vertices = 24, recipe.length = 0.5f;
-    assert_int_equal(strands_make(&world->strands, &recipe, NULL), RESULT_OK);
     gpu_timer_create(&world->timer, false, true);
     assert_int_equal(simulation_create(&world->simulation, gpu, &world->timer, &world->scene,
-                                       &world->strands, NULL, NULL),
+                                       world->strands, NULL, NULL),
                      RESULT_OK);
+}
+
+static void start(World *world, const Gpu *gpu, const char *algo, float volume, float style,
+                  const char *colliders)
+{
+    start_with(world, &few, gpu, algo, volume, style, colliders);
 }
 
 static void destroy(World *world)
 {
     simulation_destroy(&world->simulation);
     gpu_timer_destroy(&world->timer);
-    strands_destroy(&world->strands);
     scene_destroy(&world->scene);
 }
 
@@ -85,7 +108,7 @@ static Float4 *read_velocities(World *world)
 
 static Float3 *read_positions(World *world)
 {
-    Float3 *x = malloc(world->strands.vertex_count * sizeof *x);
+    Float3 *x = malloc(world->strands->vertex_count * sizeof *x);
     assert_non_null(x);
     simulation_pose(&world->simulation);
     assert_int_equal(hair_read_positions(&section_of(world)->hair, x, NULL), RESULT_OK);
@@ -188,7 +211,7 @@ static double energy(World *world)
 {
     Float3 *x = read_positions(world);
     double sum = kinetic_energy(world);
-    for (uint32_t i = 0; i < world->strands.vertex_count; ++i) sum += 9.81 * (double)x[i][1];
+    for (uint32_t i = 0; i < world->strands->vertex_count; ++i) sum += 9.81 * (double)x[i][1];
     free(x);
     return sum;
 }
@@ -197,8 +220,8 @@ static double energy(World *world)
 static double range_of(const World *world)
 {
     double sum = 0;
-    for (uint32_t s = 0; s < world->strands.strand_count; ++s)
-        sum += 9.81 * strands_length(&world->strands, s) * strands_size(&world->strands, s);
+    for (uint32_t s = 0; s < world->strands->strand_count; ++s)
+        sum += 9.81 * strands_length(world->strands, s) * strands_size(world->strands, s);
     return sum;
 }
 
@@ -232,8 +255,8 @@ static double count_voxels(World *world, double edge)
     unsigned char *full = calloc((size_t)SIDE * SIDE, SIDE);
     double count = 0;
     assert_non_null(full);
-    for (uint32_t s = 0; s < world->strands.strand_count; ++s)
-        for (uint32_t v = world->strands.first[s]; v + 1 < world->strands.first[s + 1]; ++v)
+    for (uint32_t s = 0; s < world->strands->strand_count; ++s)
+        for (uint32_t v = world->strands->first[s]; v + 1 < world->strands->first[s + 1]; ++v)
             for (int part = 0; part < PARTS; ++part) {
                 size_t at = 0;
                 for (int k = 0; k < 3; ++k) {
@@ -252,18 +275,20 @@ static double count_voxels(World *world, double edge)
 
 // Loose hair falls on a head and shoulders for 4 s. Returns the share of the groom's voxels, with 1
 // % of its height, that it still fills.
-static double kept_voxels(const char *algo, float volume)
+static double kept_voxels(const Strands *strands, const char *algo, float volume)
 {
     World world;
-    start(&world, fixture_gpu(), algo, volume, 0,
-          "sphere:0,-0.02,0,0.1; capsule:-0.18,-0.28,0,0.07,0.18,-0.28,0,0.07");
+    start_with(&world, strands, fixture_gpu(), algo, volume, 0,
+               "sphere:0,-0.02,0,0.1; capsule:-0.18,-0.28,0,0.07,0.18,-0.28,0,0.07");
     const Hair *hair = &section_of(&world)->hair;
     double edge = ((double)hair->high[1] - (double)hair->low[1]) / 100;
     double before = count_voxels(&world, edge);
     for (int frame = 0; frame < 4 * FPS; ++frame) simulation_advance(&world.simulation);
     double share = count_voxels(&world, edge) / before;
-    printf("%s: %.3f of its voxels with --volume %g, kinetic energy %.2g of what could be lost\n",
-           algo, share, (double)volume, kinetic_energy(&world) / range_of(&world));
+    printf("%s: %.3f of its voxels with --volume %g\n", algo, share, (double)volume);
+    if (strcmp(algo, "split") != 0) // whose buffer has velocities of tips only
+        printf("kinetic energy %.2g of what could be lost\n",
+               kinetic_energy(&world) / range_of(&world));
     destroy(&world);
     return share;
 }
@@ -271,10 +296,11 @@ static double kept_voxels(const char *algo, float volume)
 static void long_hair_keeps_its_space(void **state)
 {
     (void)state;
-    assert_true(kept_voxels("hybrid", 0) < 0.6);
-    assert_true(kept_voxels("hybrid", 1) >= 0.85);
-    assert_true(kept_voxels("chain", 1) >= 0.85);
-    double split = kept_voxels("split", 1);
+    assert_true(kept_voxels(&few, "hybrid", 0) < 0.6);
+    assert_true(kept_voxels(&few, "hybrid", 1) >= 0.85);
+    assert_true(kept_voxels(&few, "chain", 1) >= 0.85);
+    // Fewer strands would not show a step of the tips that is too large.
+    double split = kept_voxels(&many, "split", 1);
     assert_true(split >= 0.85 && split <= 1.3); // measured 1.13; without volume 0.37
 }
 
@@ -292,10 +318,11 @@ static int find_positions(void)
     start(&world, &gpu, "hybrid", 1, 0, "");
     for (int frame = 0; frame < 20; ++frame) simulation_advance(&world.simulation);
     Float3 *x = read_positions(&world);
-    driver_threads_tell(&gpu, x, world.strands.vertex_count * sizeof *x);
+    driver_threads_tell(&gpu, x, world.strands->vertex_count * sizeof *x);
     free(x);
     destroy(&world);
     gpu_destroy(&gpu);
+    release_hair(NULL);
     return 0;
 }
 
@@ -309,7 +336,7 @@ static void every_solver_has_it(void **state)
         assert_int_equal(on, !solver_is_static(*type));
         for (int frame = 0; on && frame < 30; ++frame) simulation_advance(&world.simulation);
         Float3 *x = read_positions(&world);
-        for (uint32_t i = 0; i < world.strands.vertex_count; ++i)
+        for (uint32_t i = 0; i < world.strands->vertex_count; ++i)
             if (!isfinite(x[i][0] + x[i][1] + x[i][2]))
                 fail_msg("%s: vertex %u is no number", (*type)->name, i);
         uint32_t *dense = on ? gpu_buffer_read(&section_of(&world)->volume.dense) : NULL;
@@ -386,7 +413,7 @@ static void blocks_are_as_the_driver_has_them(void **state)
 
 int main(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[1], "positions") == 0) return find_positions();
+    if (argc == 2 && strcmp(argv[1], "positions") == 0) return grow_hair(NULL) || find_positions();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(groom_at_rest_feels_nothing),
         cmocka_unit_test(momentum_is_kept),
@@ -398,5 +425,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(blocks_are_as_the_driver_has_them),
         cmocka_unit_test(threads_do_not_matter),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, grow_hair, release_hair);
 }
