@@ -89,11 +89,12 @@ const Run RUNS[] = {
      .name = "studio, head, quads",
      .short_faults = 3,
      .arguments = "../../in/curls.tfx --size 32x24 -q --mesh ../../in/head.obj --collide-mesh "
-                  "--raster quads -o f.png"},
+                  "--raster quads --scatter-cells 8 --shadow-size 64 -o f.png"},
     {.program = "render",
      .name = "studio, a wide groom",
      .short_faults = 3,
-     .arguments = "../../in/curls.tfx --size 32x24 -q --volume 1 --algo split -o f.pfm"},
+     .arguments = "../../in/curls.tfx --size 32x24 -q --volume 1 --algo split --scatter-cells 8 "
+                  "-o f.pfm"},
     {.program = "bench",
      .name = "accuracy",
      .short_faults = 4,
