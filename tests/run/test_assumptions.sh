@@ -5,7 +5,7 @@
 . tests/support/claims.sh
 program=$bin/tractrix-render
 # Every pass: followers, collisions with shapes and the mesh's field, volume, wind, sleep, shadows, light among hair, a floor.
-scene="assets/curls.tfx --mesh assets/ball.obj --mesh-unit auto --sdf-resolution 24 --colliders capsule:0,-1,0,0.05,0,-1.2,0,0.05 --volume 0.5 --frames 2 --size 112x84 --samples 2 --scatter-cells 8 --followers 1 --floor shadow --exposure 0 -q"
+scene="assets/curls.tfx --mesh assets/ball.obj --mesh-unit auto --sdf-resolution 24 --colliders capsule:0,-1,0,0.05,0,-1.2,0,0.05 --volume 0.5 --frames 2 --size 112x84 --samples 2 --scatter-cells 8 --shadow-size 128 --followers 1 --floor shadow --exposure 0 -q"
 
 # draw FOLDER OPTION...
 draw() {
