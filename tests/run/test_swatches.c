@@ -127,7 +127,8 @@ static void all_colours_have_one_exposure(void **state)
     double first = 0;
     for (size_t i = 0; i < sizeof said / sizeof *said; ++i) {
         char flags[100];
-        snprintf(flags, sizeof flags, "--followers 0 %s", said[i]);
+        snprintf(flags, sizeof flags, "--followers 0 --scatter-cells 12 --shadow-size 128 %s",
+                 said[i]);
         render(state, "curls", HEAD, flags, "one");
         double exposure = find_exposure(state, "one");
         if (i == 0) first = exposure;
