@@ -215,7 +215,7 @@ static void an_environment_is_the_background(void **state)
     for (int i = 0; i < 3; ++i) {
         LightStage stage;
         draw(&stage, path,
-             (const char *[]){"--size 80x60 --scatter none --environment-background", flags,
+             (const char *[]){"--size 80x60 --shadow none --environment-background", flags,
                               rasters[i]});
         const float *light = (const float *)(void *)stage.image.pixels;
         const double slope = tan(20 * M_PI / 180);
