@@ -310,7 +310,6 @@ static void pack(Work *work)
     }
     mesh->vertex_count = vertices;
     mesh->triangle_count = triangles;
-    mesh_compute_normals(mesh);
 }
 
 Result simplify_mesh(Mesh *mesh, uint32_t triangle_count, double (*weight)(const Double3 at),

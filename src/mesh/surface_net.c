@@ -208,7 +208,6 @@ static Result make_mesh(Build *build, Error *error)
     each_quad(build, split_quad);
     for (uint32_t v = 0; v < count; v++)
         for (int i = 0; i < 3; i++) build->mesh->position[v][i] = (float)build->place[v][i];
-    mesh_compute_normals(build->mesh);
     return RESULT_OK;
 }
 

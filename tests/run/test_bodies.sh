@@ -52,7 +52,11 @@ claim "each body is drawn where it is, whichever stands first"
 run 0 "$work/swapped.json" -q -o "$work/swapped/"
 holds "$bin/tractrix-compare" -q "$work/direct/frame_0003.png" "$work/swapped/frame_0003.png" --pixel-tolerance 8 --max-failing-pixels 1%
 
-claim "what one body changes is found by the cache"
+claim "another name of a body's mesh does not matter to the cache, its content and its motion do"
+cp "$work/big.obj" "$work/renamed.obj"
+sed 's/big.obj/renamed.obj/' "$both" >"$work/other.json"
+run 0 "$work/other.json" -q --from-cache "$work/a.cache" -o "$work/renamed/"
+if diff -r "$work/direct" "$work/renamed" >"$work/err"; then good; else bad "they differ"; fi
 sed 's/200\*t/190*t/' "$both" >"$work/other.json"
 run 3 "$work/other.json" -q --from-cache "$work/a.cache" -o "$work/x/"; one_line; says "bodies[1].head"
 awk '/^v / { printf "v %.7g %.7g %.7g\n", 1.2 * $2, 1.2 * $3 + 0.001, 1.2 * $4; next } { print }' assets/ball.obj >"$work/big.obj"
