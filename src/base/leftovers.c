@@ -92,6 +92,26 @@ void leftovers_name(char name[LEFTOVER_NAME_SIZE], unsigned number)
     snprintf(name, LEFTOVER_NAME_SIZE, NAME_FORMAT, hash_host(), (long)getpid(), number);
 }
 
+// Whether the process has ended but its parent has not asked for its status: for ever in a
+// container whose first process does not do so. False if the state cannot be read.
+static bool is_zombie(long process)
+{
+    char path[48], state = 0;
+    snprintf(path, sizeof path, "/proc/%ld/stat", process);
+    FILE *stream = fopen(path, "re");
+    if (!stream) return false;
+    // The state follows the program's name, which stands in brackets and may hold brackets itself.
+    for (int c; (c = getc(stream)) != EOF;)
+        if (c == ')' && getc(stream) == ' ') state = (char)getc(stream);
+    fclose(stream);
+    return state == 'Z';
+}
+
+static bool has_ended(long process)
+{
+    return kill((pid_t)process, 0) != 0 ? errno == ESRCH : is_zombie(process);
+}
+
 // Whether this is the name of a temporary file from this machine whose process has ended.
 static bool is_abandoned(const char *name)
 {
@@ -100,8 +120,7 @@ static bool is_abandoned(const char *name)
     char same[LEFTOVER_NAME_SIZE];
     if (sscanf(name, NAME_FORMAT, &host, &process, &number) != 3 || process <= 0) return false;
     snprintf(same, sizeof same, NAME_FORMAT, host, process, number);
-    return strcmp(name, same) == 0 && host == hash_host() && kill((pid_t)process, 0) != 0 &&
-           errno == ESRCH;
+    return strcmp(name, same) == 0 && host == hash_host() && has_ended(process);
 }
 
 // A container that shares the folder has process numbers of its own. Files in use are locked, so

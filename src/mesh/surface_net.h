@@ -15,7 +15,8 @@ typedef struct SurfaceNet {
 
 // Makes a closed mesh with a vertex in each cell that the surface crosses and two triangles for
 // each crossed edge of the grid (Gibson 1998, "Constrained elastic surface nets"). Vertices are on
-// the surface, up to rounding; their normals are left to the caller. RESULT_FAILED when memory is short.
+// the surface, up to rounding; their normals are left to the caller. RESULT_FAILED when memory is
+// short.
 Result surface_net_make(Mesh *mesh, const SurfaceNet *net, Error *error);
 
 // Moves a point near the surface onto it, along the normal.

@@ -69,6 +69,15 @@ static void a_program_that_does_not_notice_a_signal_ends_and_leaves_nothing(void
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 0);
 }
 
+static void sweep(void **state)
+{
+    int root = open("/", O_PATH), folder = open(temporary_path(state, "."), O_PATH);
+    leftovers_sweep(root); // the folder of an earlier test may have had the same inode
+    leftovers_sweep(folder);
+    close(root);
+    close(folder);
+}
+
 // Files of living processes, files of other machines, locked files, and files of any other name.
 static void files_that_may_be_in_use_are_kept(void **state)
 {
@@ -89,14 +98,29 @@ static void files_that_may_be_in_use_are_kept(void **state)
     temporary_write(state, dead, "old", 0644);
     int locked = open(temporary_path(state, name[2]), O_RDONLY);
     assert_int_equal(flock(locked, LOCK_SH), 0);
-    int root = open("/", O_PATH), folder = open(temporary_path(state, "."), O_PATH);
-    leftovers_sweep(root); // the folder of an earlier test may have had the same inode
-    leftovers_sweep(folder);
-    close(root);
-    close(folder);
+    sweep(state);
     assert_false(temporary_has(state, dead));
     for (int i = 0; i < 4; ++i) assert_true(temporary_has(state, name[i]));
     close(locked);
+}
+
+// A process that has ended stays in the list of processes until its parent asks for its status.
+static void what_a_zombie_left_is_removed(void **state)
+{
+    char name[LEFTOVER_NAME_SIZE];
+    unsigned host, number;
+    long process;
+    pid_t child = fork();
+    siginfo_t info;
+    if (child == 0) _exit(0);
+    assert_int_equal(waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT), 0);
+    leftovers_name(name, 0);
+    assert_int_equal(sscanf(name, ".tractrix-%08x-%ld-%u.tmp", &host, &process, &number), 3);
+    snprintf(name, sizeof name, ".tractrix-%08x-%ld-0.tmp", host, (long)child);
+    temporary_write(state, name, "old", 0644);
+    sweep(state);
+    assert_false(temporary_has(state, name));
+    assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
@@ -107,6 +131,7 @@ int main(void)
         TEST(the_next_run_removes_what_a_killed_one_left),
         TEST(a_program_that_does_not_notice_a_signal_ends_and_leaves_nothing),
         TEST(files_that_may_be_in_use_are_kept),
+        TEST(what_a_zombie_left_is_removed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
