@@ -137,6 +137,37 @@ static void area_of_a_strand_is_width_times_length(void **state)
     }
 }
 
+// A painted thickness is a factor of the radius at each vertex and stands for the tips' taper, too.
+static void thickness_scales_the_width(void **state)
+{
+    (void)state;
+    const double length = 100, width = 5;
+    float thickness[][2] = {{1, 1}, {0.5f, 0.5f}, {1, 0.2f}, {0.2f, 1}};
+    for (size_t i = 0; i < sizeof thickness / sizeof *thickness; ++i) {
+        Sitting sitting;
+        Paint paint = {.thickness = thickness[i], .vertex_count = 2};
+        sitting_open(&sitting, TRANSPARENT);
+        sitting_add(&sitting, make_line((float[3]){-50, 0.3f, 0}, (float[3]){50, 0.3f, 0}),
+                    (float)width / 2, 1)
+            ->tip_ratio = 0.3f;
+        sitting.items[0].paint = &paint;
+        draw(&sitting);
+        double mean = ((double)thickness[i][0] + (double)thickness[i][1]) / 2;
+        double left = 0, right = 0, off = alpha_sum(&sitting) - mean * width * length;
+        if (fabs(off) > (width + 1.5) * (length + 1) / 510 + 0.1 * width)
+            fail_msg("thickness %g to %g: area off by %g", (double)thickness[i][0],
+                     (double)thickness[i][1], off);
+        for (int y = 0; y < SIDE; ++y) {
+            left += pixel(&sitting, SIDE / 2 - 40, y)[3] / 255.0;
+            right += pixel(&sitting, SIDE / 2 + 40, y)[3] / 255.0;
+        }
+        // 80 px apart on a strand of 100 px.
+        double change = 0.8 * width * ((double)thickness[i][1] - (double)thickness[i][0]);
+        assert_true(fabs(right - left - change) < 0.1);
+        sitting_close(&sitting);
+    }
+}
+
 static void layers_multiply(void **state)
 {
     (void)state;
@@ -487,6 +518,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(area_of_a_strand_is_width_times_length),
+        cmocka_unit_test(thickness_scales_the_width),
         cmocka_unit_test(layers_multiply),
         cmocka_unit_test(strands_behind_each_other_cover_no_more),
         cmocka_unit_test(joints_have_neither_gap_nor_overlap),

@@ -36,6 +36,9 @@ scene '"fps": -1e30' "fps: got '-1e+30', expected a number from 1 to 10000 (1/s)
 scene '"head": {"keys": [{"time": -1e30, "translate": [0, 0, 0]}]}' "head.keys[0].time: got -1e30, expected seconds from -1000000000 to 1000000000 (nearest: -1000000000)"
 scene '"colliders": [{"sphere": [0, 0, 0, -1]}]' "colliders[0]: sphere: got the radius -1, expected a number from 0 to 1000000"
 
+claim "a device that does not exist is told from one that cannot be used"
+line 4 "--device 99: no such device: there are fewer (see --list-devices)" render fur.tfx -q --device 99 -o d.png
+
 claim "a formula's mistake has its place"
 scene '"head": {"translate": ["t +", "0", "0"]}' "head.translate[0]: got 't +', expected a formula of t: unexpected end of expression at character 4"
 scene '"head": {"rotate": ["0", "2 * foo(t)", "0"]}' "head.rotate[1]: got '2 * foo(t)', expected a formula of t: unexpected token \"foo\" at character 5"
