@@ -68,10 +68,22 @@ static void assert_streams(const char *path, const char *expected)
 {
     char text[300];
     run("ffprobe -v error -count_frames -of csv=p=0 -show_entries "
-        "stream=codec_name,width,height,nb_read_frames",
+        "stream=codec_name,width,height,r_frame_rate,nb_read_frames",
         path, "", text, sizeof text);
     text[strcspn(text, "\n")] = 0;
     assert_string_equal(text, expected);
+}
+
+// Players that are not told guess the matrix by the height, and small pictures change their
+// colours.
+static void assert_says_bt709(const char *path)
+{
+    char text[200];
+    run("ffprobe -v error -of csv=p=0 -show_entries "
+        "stream=color_range,color_space,color_transfer,color_primaries",
+        path, "", text, sizeof text);
+    text[strcspn(text, "\n")] = 0;
+    assert_string_equal(text, "tv,bt709,bt709,bt709");
 }
 
 // Decodes to one grey byte per pixel and compares each frame's corners, including padding.
@@ -98,8 +110,9 @@ static void mp4_has_every_frame_in_order_at_an_even_size(void **state)
     need_ffmpeg();
     const char *path = temporary_path(state, "x.mp4");
     write_video(path, 3);
-    assert_streams(path, "h264,66,34,12");
+    assert_streams(path, "h264,66,34,25/1,12");
     assert_greys(path, 66, 34);
+    assert_says_bt709(path);
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 1);
 }
 
@@ -108,8 +121,9 @@ static void webm_has_every_frame_in_order(void **state)
     need_ffmpeg();
     const char *path = temporary_path(state, "x.webm");
     write_video(path, 3);
-    assert_streams(path, "vp9,65,33,12");
+    assert_streams(path, "vp9,65,33,25/1,12");
     assert_greys(path, 65, 33);
+    assert_says_bt709(path);
 }
 
 static void gif_has_every_frame_in_order(void **state)
@@ -117,7 +131,7 @@ static void gif_has_every_frame_in_order(void **state)
     need_ffmpeg();
     const char *path = temporary_path(state, "x.gif");
     write_video(path, 3);
-    assert_streams(path, "gif,65,33,12");
+    assert_streams(path, "gif,65,33,25/1,12");
     assert_greys(path, 65, 33);
 }
 
@@ -186,7 +200,7 @@ static void any_character_may_stand_in_the_name(void **state)
     need_ffmpeg();
     const char *path = temporary_path(state, "-a b:c%d*;$(x)\".mp4");
     write_video(path, 3);
-    assert_streams(path, "h264,66,34,12");
+    assert_streams(path, "h264,66,34,25/1,12");
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
