@@ -15,6 +15,9 @@ for page in docs/*.md; do
     awk '/^```sh$/ { inside = 1; print "# line " NR; next } /^```$/ { inside = 0 } inside' "$page" |
         sed 's/^\( *\([A-Z_]*=[^ ]* \)*\)tractrix-render /\1.\/small /; s/--contact-sheet [0-9x]*/--contact-sheet 2x2/; s/--count 20000 /--count 2000 /; s/ -n 10000 / -n 200 /; s/range(200)/range(5)/; s/ --curve bspline//
             s/^for color in .*; do$/for color in black ginger; do/
+            s/ --first 72 / --first 6 /; /^curls_/ { s/--size 320x240/--size 64x48 --look plain --followers 1/; s/--frames 20 --first 19/--frames 4 --first 3/; }
+            /^tractrix-gen --kind straight/ s/ -n 2000 / -n 200 /
+            /^tractrix-bench /{ s/ image --set curls / image --set fur /; s/ --frames 2 / --frames 1 /; }
             /^tractrix-bench / { s/ --seconds 5/ --seconds 1/; s/ --steps [25]0/ --steps 5/; s/ --size 320x180/ --size 96x54/; }
             /^scripts.turntable / { s/--seconds 1 /--seconds 0.2 /; s/$/ --size 64x48 --followers 0 --quality draft --preroll 0 --sdf-resolution 24 --sim-rate 60/; }' >"$work/checkout/commands"
     if grep -q ffmpeg "$page" && ! command -v ffmpeg >/dev/null; then skip "no ffmpeg"; continue; fi
