@@ -157,6 +157,31 @@ run 1 --random 60 --seed 3 --only 'src/run' --limit 2
 says "survived  src/run/d.c:5: return a + 3;  ->  return a - 3;: 1 of 3 tests run its line"
 says "caught    src/run/d.c:9: return a - 4;  ->  return a + 4;: by test_exact"
 says "| \`src/run\` |"
+
+claim "--others gives survivors to quick tests of other rooms, --sanitize to the sanitizers"
+script base/test_text.sh 'grep -q "a + 3" src/run/d.c'
+run 0 --random 60 --seed 3 --only 'src/run' --limit 2 --fresh --others 30
+says "caught    src/run/d.c:5: return a + 3;  ->  return a - 3;: by test_text.sh"
+rm "$tree"/tests/base/test_text.sh "$tree"/tests/run/*
+cat >"$tree/src/run/d.c" <<'END'
+#include <stdlib.h>
+int f(int a);
+int f(int a)
+{
+    char *room = malloc(16);
+    for (int i = 0; i < 16; i++) room[i] = 1;
+    free(room);
+    return a;
+}
+END
+printf 'int f(int a);\nint main(void) { return f(0); }\n' >"$tree/tests/run/test_f.c"
+sed 's:out/release/:$(OUT)/:g' "$tree/Makefile" >"$work/Makefile"
+{ cat "$work/Makefile"; echo 'SANITIZE_BUT = ^test_none'; echo 'ifeq ($(CONFIG),sanitize)'; echo 'CFLAGS += -fsanitize=address'; echo 'LDFLAGS += -fsanitize=address'; echo endif; } >"$tree/Makefile"
+cp tests/runner "$tree/tests/"
+run 0 --random 60 --seed 3 --only 'i < 16; i' --limit 2 --least 0; says "survived  src/run/d.c:6"; says "i <= 16; i++"
+run 0 --random 60 --seed 3 --only 'i < 16; i' --limit 2 --least 0 --fresh --sanitize
+says "caught    src/run/d.c:6: for (int i = 0; i < 16; i++) room[i] = 1;  ->  for (int i = 0; i <= 16; i++) room[i] = 1;: by test_f: with the sanitizers"
+says "of them only with the sanitizers"
 rm -r "$tree/src/run" "$tree/tests/run"
 
 claim "lists that do not fit, and wrong options"
