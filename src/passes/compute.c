@@ -51,9 +51,7 @@ Result compute_create(Compute *compute, const Gpu *gpu, const RendererOptions *o
         compute_destroy(compute);
         return result;
     }
-    compute->most_rows = gpu->software ? TILES_ON_CPU / bins->columns : bins->rows;
-    if (compute->most_rows > bins->rows) compute->most_rows = bins->rows;
-    compute->band_rows = compute->most_rows;
+    compute->band_rows = gpu->software ? TILES_ON_CPU / bins->columns : bins->rows;
     return RESULT_OK;
 }
 

@@ -21,8 +21,7 @@ typedef struct Compute {
     bool shows_depth, nearest;
     ImageKind kind;
     int longest;    // number of a tile's pairs that the driver's loops can visit
-    int most_rows;  // maximum rows of tiles in a band, for the same reason
-    int band_rows;  // rows of the next image's bands
+    int band_rows;  // maximum rows of tiles in the next image's bands; limited for the same reason
     LateRead late;  // counts of the image
     bool unsettled; // the counts have not been checked
 } Compute;
