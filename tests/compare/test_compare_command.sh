@@ -79,6 +79,14 @@ in_file "$work/report.json" '"outcome": "size mismatch"'; in_file "$work/report.
 in_file "$work/report.xml" 'tests="5" failures="4" errors="0"'; in_file "$work/report.xml" '<failure type="missing"'
 run 1 "$work/a/f_%d.png" "$work/b/f_%d.png"; says "5 images: 1 same, 1 different, 1 size mismatch, 1 new, 1 missing"
 
+claim "a heat map or sheet that cannot be written makes its pair fail"
+mkdir -p "$work/blocked/f_2.png"
+for option in --heatmap --sheet; do
+    run 1 "$work/a" "$work/b" $option "$work/blocked" --json "$work/report.json"
+    says "f_2.png: failed: "; says "blocked/f_2.png: cannot write: Is a directory"; says "5 images: 1 same, 1 size mismatch, 1 new, 1 missing, 1 failed"
+    in_file "$work/report.json" '"outcome": "failed"'
+done
+
 claim "one unreadable image among others is status 3, and they are still compared"
 cp "$work/text.png" "$work/b/f_1.png"
 run 3 "$work/a" "$work/b" --junit "$work/report.xml"; says "f_1.png: unreadable"; says "f_2.png: different"; one_line
