@@ -6,9 +6,12 @@ program=$bin/tractrix-render
 hair=assets/fur.tfx
 plain="--look plain --followers 0" # for claims that are not about light: the studio light takes most of a small picture's time
 small="--frames 2 --size 32x24 $plain"
+# dark ARGUMENT...: runs the usual look, with its scalp and its followers, but without shadows and automatic exposure.
+dark() { run 0 "$@" --shadow none --exposure 0; }
 
 claim "frames are written and told"
-run 0 $hair --frames 2 --size 32x24 -o "$work/a/"
+# shellcheck disable=SC2086
+run 0 $hair $small -o "$work/a/"
 is_file "$work/a/frame_0000.png"; is_file "$work/a/frame_0001.png"; says "OpenGL"; says "2 frames in"
 
 claim "-q says nothing"
@@ -281,33 +284,33 @@ for frame in 1 2; do
 done
 
 claim "a scalp of another size than a head's names the unit that gives it a head"
-run 0 assets/curls.tfx --unit 10 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be as large as a head"; says "the scalp is 1.5 m wide, a head's 0.15 m: with --unit m it is as wide"
-run 0 assets/curls.tfx --unit 0.5 --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be"; says "with --unit m it is as wide"
+dark assets/curls.tfx --unit 10 --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be as large as a head"; says "the scalp is 1.5 m wide, a head's 0.15 m: with --unit m it is as wide"
+dark assets/curls.tfx --unit 0.5 --followers 0 --frames 1 --size 16x16 -o "$work/head.png"; says "scalp: none: it would not be"; says "with --unit m it is as wide"
 
 claim "hair on a scalp gets a head that hides and holds it; --scalp none, -q and what is no scalp are silent"
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: guessed a head of 0.1"; in_file "$work/stats.json" '"sphere"'
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: guessed a head of 0.1"
+dark assets/curls.tfx --followers 0 --frames 1 --size 48x32 -o "$work/head.png" --stats "$work/stats.json"; says "scalp: guessed a head of 0.1"; in_file "$work/stats.json" '"sphere"'
+dark assets/curls.tfx --followers 0 --frames 1 --size 48x32 --no-collide-mesh -o "$work/head.png" --stats "$work/stats.json"; says "scalp: guessed a head of 0.1"
 if grep -q '"sphere"' "$work/stats.json"; then bad "a fitted head holds hair with --no-collide-mesh"; else good; fi
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
+dark assets/curls.tfx --followers 0 --frames 1 --size 48x32 --scalp none -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
 if cmp -s "$work/head.png" "$work/bare.png"; then bad "the same picture"; else good; fi
-run 0 assets/fur.tfx --frames 1 --size 16x16 --scatter none -v -o "$work/fur.png"; says "scalp: none: the roots are not on top"; says "the roots surround a body that is not drawn, and the far side shows through: expected --mesh with its shape"
-run 0 assets/fur.tfx --mesh assets/ball.obj --frames 1 --size 16x16 --scatter none -o "$work/fur.png"; if grep -q "surround" "$work/err"; then bad "said something"; else good; fi
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 16x16 -q -o "$work/bare.png"; silent err
+dark assets/fur.tfx --frames 1 --size 16x16 -v -o "$work/fur.png"; says "scalp: none: the roots are not on top"; says "the roots surround a body that is not drawn, and the far side shows through: expected --mesh with its shape"
+dark assets/fur.tfx --mesh assets/ball.obj --frames 1 --size 16x16 -o "$work/fur.png"; if grep -q "surround" "$work/err"; then bad "said something"; else good; fi
+dark assets/curls.tfx --followers 0 --frames 1 --size 16x16 -q -o "$work/bare.png"; silent err
 run 0 assets/curls.tfx --frames 1 --size 16x16 --look plain -o "$work/bare.png"; if grep -q "scalp" "$work/err"; then bad "said something"; else good; fi
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 3 --size 16x16 --cache "$work/scalp.cache"; run 0 assets/curls.tfx --scatter none --followers 4 --frames 3 --size 16x16 --from-cache "$work/scalp.cache" -o "$work/scalp/"
+dark assets/curls.tfx --followers 0 --frames 3 --size 16x16 --cache "$work/scalp.cache"; dark assets/curls.tfx --followers 4 --frames 3 --size 16x16 --from-cache "$work/scalp.cache" -o "$work/scalp/"
 
 claim "hair of few strands is filled, in one line, unless the user says a number"
-run 0 assets/curls.tfx --scatter none --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"; says "assets/curls.tfx: 1200 followers fill the space between 300 strands: set --followers to change their number"
+dark assets/curls.tfx --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"; says "assets/curls.tfx: 1200 followers fill the space between 300 strands: set --followers to change their number"
 in_file "$work/stats.json" '"followers": 1200'
-run 0 assets/curls.tfx --scatter none --followers 0 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "followers" "$work/err"; then bad "said something"; else good; fi
-run 0 assets/curls.tfx --scatter none --frames 1 --size 16x16 -q -o "$work/fill/"; silent err
+dark assets/curls.tfx --followers 0 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "followers" "$work/err"; then bad "said something"; else good; fi
+dark assets/curls.tfx --frames 1 --size 16x16 -q -o "$work/fill/"; silent err
 
 claim "if only the fibre radius keeps hair of few strands from being filled, a line gives the options"
-run 0 assets/curls.tfx --radius 0.0002 --scatter none --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"
+dark assets/curls.tfx --radius 0.0002 --frames 1 --size 16x16 -o "$work/fill/" --stats "$work/stats.json"
 says "assets/curls.tfx: the space between 300 strands is not filled because --radius is given: --followers 4 --follow interpolate fills it"
 in_file "$work/stats.json" '"followers": 0'
-run 0 assets/curls.tfx --radius 0.0002 --followers 0 --scatter none --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "filled" "$work/err"; then bad "said something"; else good; fi
-run 0 assets/bob.tfx --radius 0.0002 --scatter none --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "filled" "$work/err"; then bad "said something"; else good; fi
+dark assets/curls.tfx --radius 0.0002 --followers 0 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "filled" "$work/err"; then bad "said something"; else good; fi
+dark assets/bob.tfx --radius 0.0002 --frames 1 --size 16x16 -o "$work/fill/"; if grep -q "filled" "$work/err"; then bad "said something"; else good; fi
 
 claim "a variant that may run away is told, unless quiet"
 # shellcheck disable=SC2086
