@@ -370,6 +370,15 @@ static void the_content_of_an_environment_counts(void **state)
     world.assets.environment.parts = NULL;
     assert_string_not_equal(none.image, dark.image);
     assert_string_not_equal(dark.image, lit.image);
+    // The image that is drawn as background: finer than the parts.
+    Image *shown = &world.assets.environment.image;
+    assert_int_equal(image_create(shown, 4, 2, 3, NULL), RESULT_OK);
+    memset(shown->pixels, 0, image_size(shown));
+    Numbers black = numbers_of(&world);
+    shown->pixels[image_size(shown) - 1] = 1;
+    Numbers bright = numbers_of(&world);
+    assert_string_not_equal(none.image, black.image);
+    assert_string_not_equal(black.image, bright.image);
     destroy(&world);
 }
 

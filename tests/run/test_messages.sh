@@ -36,6 +36,14 @@ scene '"fps": -1e30' "fps: got '-1e+30', expected a number from 1 to 10000 (1/s)
 scene '"head": {"keys": [{"time": -1e30, "translate": [0, 0, 0]}]}' "head.keys[0].time: got -1e30, expected seconds from -1000000000 to 1000000000 (nearest: -1000000000)"
 scene '"colliders": [{"sphere": [0, 0, 0, -1]}]' "colliders[0]: sphere: got the radius -1, expected a number from 0 to 1000000"
 
+claim "a corner of a mesh that is no vertex has its place"
+{ printf 'ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n'
+  printf 'element face 1\nproperty list uchar int vertex_indices\nend_header\n'; head -c 36 /dev/zero; } >start.ply
+{ cat start.ply; printf '\003\0\0\0\0\001\0\0\0\377\377\377\377'; } >below.ply
+{ cat start.ply; printf '\003\0\0\0\0\001\0\0\0\003\0\0\0'; } >above.ply
+line 3 "below.ply: byte 218: -1 in a list: expected a whole number from 0" render fur.tfx -q --mesh below.ply -o d.png
+line 3 "above.ply: byte 218: face 0 has corner 3: expected less than 3" render fur.tfx -q --mesh above.ply -o d.png
+
 claim "a device that does not exist is told from one that cannot be used"
 line 4 "--device 99: no such device: there are fewer (see --list-devices)" render fur.tfx -q --device 99 -o d.png
 

@@ -82,7 +82,10 @@ static void depth_is_the_distance_below_the_surface_but_of_roots(void **state)
     double depth[9];
     Strands strands = make_spokes(0.05f, 0.07f, 0.2f);
     make_ball(&ball, RINGS);
+    float before[9][3];
+    memcpy(before, strands.position, sizeof before);
     assert_int_equal(strands_find_depth(&strands, &ball.surface, depth, NULL), RESULT_OK);
+    assert_memory_equal(strands.position, before, sizeof before);
     for (uint32_t s = 0; s < 3; ++s) {
         assert_true(depth[3 * s] < 0); // a root
         assert_float_equal(depth[3 * s + 1], 0.03, FLAT);
