@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The table of hair file formats: written files are recognised and read back exactly.
+#include "base/bytes.h"
 #include "base/random.h"
 #include "gen/strands_make.h"
 #include "image/image.h"
@@ -251,6 +252,29 @@ static void uneven_strands_go_into_text_and_hair_only(void **state)
     strands_destroy(&strands);
 }
 
+// The array of transparencies, bit 3 of the header's word at byte 12, is written only if it says
+// something; one vertex is enough.
+static void hair_files_have_transparency_only_if_hair_is_transparent(void **state)
+{
+    Strands strands = make_uneven();
+    strands.color = malloc(strands.vertex_count * sizeof *strands.color);
+    assert_non_null(strands.color);
+    for (uint32_t v = 0; v < strands.vertex_count; v++)
+        for (int k = 0; k < 4; k++) strands.color[v][k] = k < 3 ? 0.25f : 1;
+    for (uint32_t clear = 0; clear <= strands.vertex_count; clear++) { // the last: none
+        if (clear < strands.vertex_count) strands.color[clear][3] = 0.5f;
+        Strands back = read_back(state, FORMAT_HAIR, &strands, &METRES);
+        Bytes file;
+        assert_int_equal(bytes_read_file(&file, temporary_path(state, "hair"), NULL), RESULT_OK);
+        assert_int_equal(file.data[12] >> 3 & 1, clear < strands.vertex_count);
+        assert_memory_equal(back.color, strands.color, strands.vertex_count * sizeof *back.color);
+        bytes_destroy(&file);
+        strands_destroy(&back);
+        if (clear < strands.vertex_count) strands.color[clear][3] = 1;
+    }
+    strands_destroy(&strands);
+}
+
 static Strands read_obj(void **state, const char *text, Result expected, Error *error)
 {
     Strands strands;
@@ -362,6 +386,7 @@ int main(void)
         TEST(what_was_written_in_metres_is_guessed_to_be_metres),
         TEST(followers_and_fixed_ends_survive_where_the_kind_holds_them),
         TEST(uneven_strands_go_into_text_and_hair_only),
+        TEST(hair_files_have_transparency_only_if_hair_is_transparent),
         TEST(lines_of_obj_files_are_strands),
         TEST(broken_obj_files_are_refused_with_their_line),
         TEST(what_a_kind_cannot_hold_is_known),
