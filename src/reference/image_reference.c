@@ -504,7 +504,7 @@ static void average_pixel(const Row *row, int x, const double background[4], dou
 // All pixels without hits have the same mean, which is found once a row.
 static void write_row(const Row *row, const double background[4], Image *image)
 {
-    double empty[4];
+    double empty[4] = {0};
     bool found = false;
     for (int x = 0; x < image->width; ++x) {
         double mean[4];
