@@ -165,7 +165,7 @@ says "| \`src/run\` |"
 
 claim "--others gives survivors to quick tests of other rooms, --sanitize to the sanitizers"
 script base/test_text.sh 'grep -q "a + 3" src/run/d.c'
-run 0 --random 60 --seed 3 --only 'src/run' --limit 2 --fresh --others 30
+run 0 --random 60 --seed 3 --only 'return a - 3' --limit 2 --fresh --others 30
 says "caught    src/run/d.c:5: return a + 3;  ->  return a - 3;: by test_text.sh"
 rm "$tree"/tests/base/test_text.sh "$tree"/tests/run/*
 cat >"$tree/src/run/d.c" <<'END'
@@ -190,8 +190,8 @@ int main(void)
 }
 END
 cp tests/runner "$tree/tests/"
-run 0 --random 60 --seed 3 --only 'i < 16; i' --limit 2 --least 0; says "survived  src/run/d.c:6"; says "i <= 16; i++"
-run 0 --random 60 --seed 3 --only 'i < 16; i' --limit 2 --least 0 --fresh --sanitize
+run 1 --random 60 --seed 3 --only 'i <= 16' --limit 2; says "survived  src/run/d.c:6"
+run 0 --random 60 --seed 3 --only 'i <= 16' --limit 2 --fresh --sanitize
 says "caught    src/run/d.c:6: for (int i = 0; i < 16; i++) room[i] = 1;  ->  for (int i = 0; i <= 16; i++) room[i] = 1;: by test_f: with the sanitizers"
 says "of them only with the sanitizers"
 rm -r "$tree/src/run" "$tree/tests/run"
