@@ -44,7 +44,7 @@ claim "a corner of a mesh that is no vertex has its place"
 line 3 "below.ply: byte 218: -1 in a list: expected a whole number from 0" render fur.tfx -q --mesh below.ply -o d.png
 line 3 "above.ply: byte 218: face 0 has corner 3: expected less than 3" render fur.tfx -q --mesh above.ply -o d.png
 
-claim "a device that does not exist is told from one that cannot be used"
+claim "a device that does not exist is told, and no other failure"
 line 4 "--device 99: no such device: there are fewer (see --list-devices)" render fur.tfx -q --device 99 -o d.png
 
 claim "a formula's mistake has its place"
