@@ -115,7 +115,8 @@ LANE_PIXELS := $(addprefix $(OUT)/lanes/,composite.o pixels.o shade.o project.o)
 # Lanes: without these flags, selects and square roots are not vectorised, because they might trap or set errno. Loops
 # of 16 lanes must not be unrolled before they are vectorised (gcc unrolls loops of up to 16 turns). The results have
 # the same bits.
-$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/head.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
+$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
+$(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS:15=6) # loops of 8 points
 $(LANE_PIXELS): C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
 $(OUT)/glsl_sources.c: scripts/embed-text $(SHADERS) $(OUT)/files
@@ -130,7 +131,7 @@ $(OUT)/glsl_sources.o $(OUT)/bench/bench_glsl.o $(OUT)/tests/glsl_sources.o $(OU
 	$(call run,CC,$(CC) $(C_FLAGS) -Wno-overlength-strings -MMD -MP -c -o $@ $<)
 $(OUT)/mesh/stand_in_table.c: $(OUT)/mesh/write_stand_in
 	$(call run,MAKE,$< >$@.tmp && mv $@.tmp $@)
-$(OUT)/mesh/write_stand_in: $(addprefix $(OUT)/,mesh/write_stand_in.o $(addprefix mesh/,head.o simplify.o surface_net.o mesh.o) base/error.o base/quote.o base/utf8.o) $(KEEP_$(CONFIG))
+$(OUT)/mesh/write_stand_in: $(addprefix $(OUT)/,mesh/write_stand_in.o $(addprefix mesh/,head.o simplify.o surface_net.o mesh.o) base/error.o base/simd.o base/quote.o base/utf8.o) $(KEEP_$(CONFIG))
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ -lm $(LDLIBS))
 $(OUT)/image/jpeg.o: C_FLAGS += -fno-sanitize=shift # stb_image_write shifts bits beyond an int on purpose
 $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files

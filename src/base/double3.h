@@ -8,6 +8,17 @@
 
 typedef double Double3[3];
 
+// As fmax and fmin, but without a call. If one number is NaN they return b.
+static inline double double_max(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline double double_min(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 static inline void double3_copy(const Double3 from, Double3 to)
 {
     memmove(to, from, sizeof(Double3));

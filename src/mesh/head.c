@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/head.h"
 
+#include "base/simd.h"
 #include "mesh/simplify.h"
 #include "mesh/surface_net.h"
 
@@ -83,18 +84,6 @@ static const Part PARTS[] = {
     {KEEP, EGG, ONE, 0.030, {0, -0.080, -0.030}, {0.185, 0.225, 0.170}},
 };
 
-// Quilez's bound of an ellipsoid's distance, with exact sign: (|p/r| - 1) |p/r| / |p/r^2|.
-static double egg_distance(const Part *part, const Double3 at)
-{
-    Double3 p, q;
-    for (int i = 0; i < 3; i++) {
-        p[i] = (at[i] - part->a[i]) / part->b[i];
-        q[i] = p[i] / part->b[i];
-    }
-    double k = double3_length(p), l = double3_length(q);
-    return l > 0.0 ? k * (k - 1.0) / l : -fmin(part->b[0], fmin(part->b[1], part->b[2]));
-}
-
 // Data of a part that do not depend on the point: the axis and sides of a round cone; the bounding
 // box of the part with its mirror image, in |x|; and the smallest ratio of the part's distance
 // bound to the distance from that box.
@@ -119,65 +108,103 @@ enum { GROUP_PARTS = 4, GROUPS = (PART_COUNT + GROUP_PARTS - 1) / GROUP_PARTS };
 static Shape shapes[PART_COUNT];
 static Group groups[GROUPS];
 
-// Works in the plane of the axis and the point. The nearest point is on the slanted side or on one
-// of the spheres.
-static double cone_distance(const Part *part, const Shape *shape, const Double3 at)
+// Quilez's bound of an ellipsoid's distance, with exact sign: (|p/r| - 1) |p/r| / |p/r^2|.
+SIMD_INLINE double egg_distance(const Part *part, double x, double y, double z)
 {
-    Double3 p, across;
-    double3_subtract(at, part->a, p);
-    double along = double3_dot(p, shape->axis);
-    double3_copy(p, across);
-    double3_flatten(across, shape->axis);
-    double flat = double3_length(across);
-    double foot = along + flat * shape->slant / shape->straight;
-    if (foot <= 0.0) return double3_length(p) - part->a[3];
-    if (foot >= shape->length) return double3_distance(at, part->b) - part->b[3];
-    return flat * shape->straight + along * shape->slant - part->a[3];
+    const double *a = part->a, *r = part->b;
+    double px = (x - a[0]) / r[0], py = (y - a[1]) / r[1], pz = (z - a[2]) / r[2];
+    double qx = px / r[0], qy = py / r[1], qz = pz / r[2];
+    double k = sqrt(px * px + py * py + pz * pz), l = sqrt(qx * qx + qy * qy + qz * qz);
+    return l > 0.0 ? k * (k - 1.0) / l : -double_min(r[0], double_min(r[1], r[2]));
 }
 
 // A minimum that rounds the seam over the width `blend`. Twice differentiable, and exactly
 // symmetric in a and b.
-static double smooth_min(double a, double b, double blend)
+SIMD_INLINE double smooth_min(double a, double b, double blend)
 {
-    double least = a < b ? a : b, near = blend - fabs(a - b), h = near / blend;
-    return near > 0.0 ? least - h * h * h * blend / 6.0 : least;
-}
-
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-static double lesser(double a, double b)
-{
-    return a < b ? a : b;
+    double least = a < b ? a : b, h = double_max(blend - fabs(a - b), 0.0) / blend;
+    return least - h * h * h * blend / 6.0;
 }
 
 // Whether a distance bound of at least `ratio` times the distance to the box exceeds `distance` (>=
 // 0).
-static bool is_far(const Double3 low, const Double3 high, double ratio, const Double3 at,
-                   double distance)
+SIMD_INLINE bool is_far(const Double3 low, const Double3 high, double ratio, double x, double y,
+                        double z, double distance)
 {
-    double gap = 0.0;
-    for (int i = 0; i < 3; i++) gap = greater(gap, greater(low[i] - at[i], at[i] - high[i]));
+    double gap = double_max(0.0, double_max(low[0] - x, x - high[0]));
+    gap = double_max(gap, double_max(low[1] - y, y - high[1]));
+    gap = double_max(gap, double_max(low[2] - z, z - high[2]));
     return gap * ratio > distance;
 }
 
-static double form_distance(const Part *part, const Shape *shape, const Double3 at)
+// Points at which parts are evaluated together, on the parts' side (x >= 0), and their distances
+// from the parts so far.
+enum { SPOTS = 8 };
+typedef struct SIMD_ALIGNED Spots {
+    double x[SPOTS], y[SPOTS], z[SPOTS], sum[SPOTS];
+} Spots;
+
+// `side`: 1, or -1 for the mirror image.
+SIMD_INLINE void find_eggs(const Part *part, const Spots *at, int count, double side,
+                           double distance[SPOTS])
 {
-    return part->form == EGG ? egg_distance(part, at) : cone_distance(part, shape, at);
+    for (int k = 0; k < count; k++)
+        distance[k] = egg_distance(part, side * at->x[k], at->y[k], at->z[k]);
 }
 
-// `at` must be on the part's side, x >= 0. The mirror image is evaluated only where it is near
-// enough to blend.
-static double part_distance(const Part *part, const Shape *shape, const Double3 at)
+// Works in the plane of the axis and the point. The nearest point is on the slanted side or on one
+// of the spheres.
+SIMD_INLINE void find_cones(const Part *part, const Shape *shape, const Spots *at, int count,
+                            double side, double distance[SPOTS])
 {
-    const Double3 mirrored = {-at[0], at[1], at[2]};
-    double distance = form_distance(part, shape, at);
-    if (part->sides == ONE || is_far(shape->low, shape->high, shape->ratio, mirrored,
-                                     greater(distance + part->blend, 0.0)))
-        return distance;
-    return smooth_min(distance, form_distance(part, shape, mirrored), part->blend);
+    const double *a = part->a, *b = part->b, *axis = shape->axis;
+    double foot[SPOTS], slanted[SPOTS], begin[SPOTS], end[SPOTS];
+    for (int k = 0; k < count; k++) {
+        double x = side * at->x[k], y = at->y[k], z = at->z[k], px = x - a[0], py = y - a[1],
+               pz = z - a[2], ex = x - b[0], ey = y - b[1], ez = z - b[2];
+        double along = px * axis[0] + py * axis[1] + pz * axis[2];
+        double ax = px - along * axis[0], ay = py - along * axis[1], az = pz - along * axis[2];
+        double flat = sqrt(ax * ax + ay * ay + az * az);
+        foot[k] = along + flat * shape->slant / shape->straight;
+        slanted[k] = flat * shape->straight + along * shape->slant - a[3];
+        begin[k] = sqrt(px * px + py * py + pz * pz) - a[3];
+        end[k] = sqrt(ex * ex + ey * ey + ez * ez) - b[3];
+    }
+    for (int k = 0; k < count; k++) {
+        double past = foot[k] >= shape->length ? end[k] : slanted[k];
+        distance[k] = foot[k] <= 0.0 ? begin[k] : past;
+    }
+}
+
+SIMD_INLINE void find_distances(const Part *part, const Shape *shape, const Spots *at, int count,
+                                double side, double distance[SPOTS])
+{
+    if (part->form == EGG)
+        find_eggs(part, at, count, side, distance);
+    else
+        find_cones(part, shape, at, count, side, distance);
+}
+
+// Adds a part to the sums of the first `count` points. The mirror image is evaluated only where it
+// is near enough to blend.
+SIMD_INLINE void join_part(int i, Spots *at, int count)
+{
+    const Part *part = &PARTS[i];
+    const Shape *shape = &shapes[i];
+    double distance[SPOTS], mirrored[SPOTS], sign = part->kind == ADD ? 1.0 : -1.0,
+                                             turned = part->kind == KEEP ? -1.0 : 1.0;
+    find_distances(part, shape, at, count, 1.0, distance);
+    int near = 0;
+    for (int k = 0; part->sides == BOTH && k < count; k++)
+        near += !is_far(shape->low, shape->high, shape->ratio, -at->x[k], at->y[k], at->z[k],
+                        double_max(distance[k] + part->blend, 0.0));
+    if (near) {
+        find_distances(part, shape, at, count, -1.0, mirrored);
+        for (int k = 0; k < count; k++)
+            distance[k] = smooth_min(distance[k], mirrored[k], part->blend);
+    }
+    for (int k = 0; k < count; k++)
+        at->sum[k] = sign * smooth_min(sign * at->sum[k], turned * distance[k], part->blend);
 }
 
 // The bound of an ellipsoid's distance is at least the distance times the shortest over the longest
@@ -186,13 +213,14 @@ static void find_shape(const Part *part, Shape *shape)
 {
     const double *a = part->a, *b = part->b;
     for (int i = 0; i < 3; i++) {
-        double wide = part->form == EGG ? b[i] : greater(a[3], b[3]);
-        shape->low[i] = (part->form == EGG ? a[i] : lesser(a[i], b[i])) - wide;
-        shape->high[i] = (part->form == EGG ? a[i] : greater(a[i], b[i])) + wide;
+        double wide = part->form == EGG ? b[i] : double_max(a[3], b[3]);
+        shape->low[i] = (part->form == EGG ? a[i] : double_min(a[i], b[i])) - wide;
+        shape->high[i] = (part->form == EGG ? a[i] : double_max(a[i], b[i])) + wide;
     }
     shape->ratio = 1.0;
     if (part->form == EGG) {
-        shape->ratio = lesser(b[0], lesser(b[1], b[2])) / greater(b[0], greater(b[1], b[2]));
+        shape->ratio =
+            double_min(b[0], double_min(b[1], b[2])) / double_max(b[0], double_max(b[1], b[2]));
         return;
     }
     double3_subtract(b, a, shape->axis);
@@ -213,23 +241,13 @@ static void find_shapes(void)
             group->ratio = 1.0;
         }
         for (int k = 0; k < 3; k++) {
-            group->low[k] = lesser(group->low[k], shape->low[k]);
-            group->high[k] = greater(group->high[k], shape->high[k]);
+            group->low[k] = double_min(group->low[k], shape->low[k]);
+            group->high[k] = double_max(group->high[k], shape->high[k]);
         }
         // a KEEP part affects every point
-        group->ratio = PARTS[i].kind == KEEP ? 0.0 : lesser(group->ratio, shape->ratio);
-        group->blend = greater(group->blend, PARTS[i].blend);
+        group->ratio = PARTS[i].kind == KEEP ? 0.0 : double_min(group->ratio, shape->ratio);
+        group->blend = double_max(group->blend, PARTS[i].blend);
     }
-}
-
-// The distance of the head including part `i`, from that without it (`sum`), for x >= 0.
-static double join_part(double sum, int i, const Double3 at)
-{
-    const Part *part = &PARTS[i];
-    double sign = part->kind == ADD ? 1.0 : -1.0;
-    double distance = part_distance(part, &shapes[i], at);
-    if (part->kind == KEEP) distance = -distance;
-    return sign * smooth_min(sign * sum, distance, part->blend);
 }
 
 // Skips parts that are too far away to change the result anywhere within `reach` of the point. Over
@@ -237,36 +255,37 @@ static double join_part(double sum, int i, const Double3 at)
 // much, which bounds its gradient.
 double head_patch_find(HeadPatch *patch, const Double3 point, double reach)
 {
-    const Double3 at = {fabs(point[0]), point[1], point[2]};
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    double sum = 1.0, slack = 9.0 * reach;
+    Spots at = {.x = {fabs(point[0])}, .y = {point[1]}, .z = {point[2]}, .sum = {1.0}};
+    double slack = 9.0 * reach, x = at.x[0], y = at.y[0], z = at.z[0];
     pthread_once(&once, find_shapes);
+    double3_copy(point, patch->at);
+    patch->reach = reach;
     patch->count = 0;
     for (int i = 0; i < PART_COUNT; i++) {
         const Shape *shape = &shapes[i];
         const Group *group = &groups[i / GROUP_PARTS];
-        double sign = PARTS[i].kind == ADD ? 1.0 : -1.0;
-        if (i % GROUP_PARTS == 0 && is_far(group->low, group->high, group->ratio, at,
+        double sign = PARTS[i].kind == ADD ? 1.0 : -1.0, sum = at.sum[0];
+        if (i % GROUP_PARTS == 0 && is_far(group->low, group->high, group->ratio, x, y, z,
                                            fabs(sum) + 1.2 * group->blend + slack)) {
             i += GROUP_PARTS - 1;
             continue;
         }
         if (PARTS[i].kind != KEEP &&
-            is_far(shape->low, shape->high, shape->ratio, at,
-                   greater(sign * sum, 0.0) + 1.2 * PARTS[i].blend + slack))
+            is_far(shape->low, shape->high, shape->ratio, x, y, z,
+                   double_max(sign * sum, 0.0) + 1.2 * PARTS[i].blend + slack))
             continue;
         patch->part[patch->count++] = (unsigned char)i;
-        sum = join_part(sum, i, at);
+        join_part(i, &at, 1);
     }
-    return sum;
+    return at.sum[0];
 }
 
 double head_patch_distance(const HeadPatch *patch, const Double3 point)
 {
-    const Double3 at = {fabs(point[0]), point[1], point[2]};
-    double sum = 1.0;
-    for (int i = 0; i < patch->count; i++) sum = join_part(sum, patch->part[i], at);
-    return sum;
+    Spots at = {.x = {fabs(point[0])}, .y = {point[1]}, .z = {point[2]}, .sum = {1.0}};
+    for (int i = 0; i < patch->count; i++) join_part(patch->part[i], &at, 1);
+    return at.sum[0];
 }
 
 double head_distance(const Double3 at)
@@ -275,18 +294,35 @@ double head_distance(const Double3 at)
     return head_patch_find(&unused, at, 0.0);
 }
 
-void head_patch_normal(const HeadPatch *patch, const Double3 at, Double3 normal)
+// A patch, and points near it.
+typedef struct Look {
+    const HeadPatch *patch;
+    Spots *at;
+} Look;
+
+SIMD_INLINE void look(const Look *look, int part)
+{
+    (void)part;
+    for (int i = 0; i < look->patch->count; i++) join_part(look->patch->part[i], look->at, SPOTS);
+}
+
+SIMD_CALL(look, Look)
+
+double head_patch_normal(const HeadPatch *patch, const Double3 point, Double3 normal)
 {
     const double step = HEAD_NORMAL_REACH;
-    for (int i = 0; i < 3; i++) {
-        Double3 ahead, behind;
-        double3_copy(at, ahead);
-        double3_copy(at, behind);
-        ahead[i] += step;
-        behind[i] -= step;
-        normal[i] = head_patch_distance(patch, ahead) - head_patch_distance(patch, behind);
+    Spots at;
+    for (int k = 0; k < SPOTS; k++) { // both ways along each axis, then the point itself
+        Double3 beside;
+        double3_copy(point, beside);
+        if (k < 6) beside[k / 2] += k % 2 ? -step : step;
+        at.x[k] = fabs(beside[0]), at.y[k] = beside[1], at.z[k] = beside[2];
+        at.sum[k] = 1.0;
     }
+    call_look(&(Look){patch, &at});
+    for (int i = 0; i < 3; i++) normal[i] = at.sum[2 * i] - at.sum[2 * i + 1];
     if (!(double3_normalize(normal) > 0.0)) normal[1] = 1.0;
+    return at.sum[6];
 }
 
 void head_normal(const Double3 at, Double3 normal)
@@ -392,11 +428,25 @@ static double look_at(const Double3 at)
     return at[1] < 0.02 && fabs(at[0]) > 0.068 ? 3.0 : 0.5;
 }
 
+// As SurfaceNet.near; `own` is a HeadPatch.
+static double measure_near(void *own, const Double3 at, Double3 normal)
+{
+    const double wide = 2e-4; // m, of most steps; a wider patch has more parts
+    HeadPatch *patch = own;
+    if (double3_distance(at, patch->at) + HEAD_NORMAL_REACH >= patch->reach)
+        head_patch_find(patch, at, wide);
+    return normal ? head_patch_normal(patch, at, normal) : head_patch_distance(patch, at);
+}
+
 Result head_make_mesh(Mesh *mesh, uint32_t triangle_count, Error *error)
 {
     double x[LINES], y[LINES], z[LINES];
-    SurfaceNet net = {
-        .distance = head_distance, .normal = head_normal, .line = {x, y, z}, .smoothing = 3};
+    HeadPatch patch = {.reach = -1.0};
+    SurfaceNet net = {.distance = head_distance,
+                      .near = measure_near,
+                      .own = &patch,
+                      .line = {x, y, z},
+                      .smoothing = 3};
     net.count[0] = place_lines(ACROSS, sizeof ACROSS / sizeof *ACROSS, true, x);
     net.count[1] = place_lines(UP, sizeof UP / sizeof *UP, false, y);
     net.count[2] = place_lines(AHEAD, sizeof AHEAD / sizeof *AHEAD, false, z);

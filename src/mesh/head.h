@@ -16,6 +16,8 @@ double head_distance(const Double3 at);
 enum { HEAD_PARTS_MOST = 64 };
 
 typedef struct HeadPatch {
+    Double3 at;   // the point
+    double reach; // m
     int count;
     unsigned char part[HEAD_PARTS_MOST];
 } HeadPatch;
@@ -27,9 +29,10 @@ double head_patch_distance(const HeadPatch *patch, const Double3 point);
 // The outward unit normal, from the gradient of the distance.
 void head_normal(const Double3 at, Double3 normal);
 
-// The same for a patch that reaches at least HEAD_NORMAL_REACH (m) from the point.
+// The same for a patch that reaches at least HEAD_NORMAL_REACH (m) from the point. Returns the
+// distance.
 #define HEAD_NORMAL_REACH 1e-5
-void head_patch_normal(const HeadPatch *patch, const Double3 at, Double3 normal);
+double head_patch_normal(const HeadPatch *patch, const Double3 at, Double3 normal);
 
 #define HEAD_UNIT 1e-5 // m, unit of the mesh's coordinates
 

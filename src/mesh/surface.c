@@ -309,7 +309,8 @@ static void nearest_on_edge(const Double3 corner[3], const Double3 p, int a, Dou
     Double3 edge, to;
     double3_subtract(corner[b], corner[a], edge);
     double3_subtract(p, corner[a], to);
-    double share = fmin(fmax(double3_dot(to, edge) / double3_dot(edge, edge), 0.0), 1.0);
+    double share =
+        double_min(double_max(double3_dot(to, edge) / double3_dot(edge, edge), 0.0), 1.0);
     weight[a] = 1.0 - share;
     weight[b] = share;
     weight[(a + 2) % 3] = 0.0;
@@ -353,7 +354,7 @@ static double box_distance(const SurfaceNode *node, const Double3 p)
 {
     double sum = 0.0;
     for (int i = 0; i < 3; i++) {
-        double out = fmax(fmax(node->low[i] - p[i], p[i] - node->high[i]), 0.0);
+        double out = double_max(double_max(node->low[i] - p[i], p[i] - node->high[i]), 0.0);
         sum += out * out;
     }
     return sum;
@@ -387,26 +388,34 @@ static const double *find_side(const Surface *surface, const SurfacePoint *point
 
 double surface_nearest(const Surface *surface, const Double3 from, SurfacePoint *nearest)
 {
-    uint32_t stack[DEEPEST], depth = 0;
+    struct {
+        uint32_t node;
+        double square; // distance of its box
+    } stack[DEEPEST];
+    uint32_t depth = 0;
     double best = INFINITY;
     Double3 face, away;
     bool known = nearest->triangle < surface->mesh->triangle_count &&
                  surface_triangle(surface->mesh, nearest->triangle, face) > 0.0;
     if (known) try_triangle(surface, nearest->triangle, from, nearest, &best);
-    stack[depth++] = 0;
+    stack[depth].node = 0;
+    stack[depth++].square = box_distance(surface->nodes, from);
     while (depth > 0) {
-        uint32_t at = stack[--depth];
+        uint32_t at = stack[--depth].node;
         const SurfaceNode *node = &surface->nodes[at];
-        if (box_distance(node, from) >= best) continue;
+        if (stack[depth].square >= best) continue;
         if (node->right == 0) {
             for (uint32_t i = node->begin; i < node->end; i++)
                 try_triangle(surface, surface->triangle[i], from, nearest, &best);
             continue;
         }
-        bool left_first = box_distance(&surface->nodes[at + 1], from) <=
-                          box_distance(&surface->nodes[node->right], from);
-        stack[depth++] = left_first ? node->right : at + 1;
-        stack[depth++] = left_first ? at + 1 : node->right;
+        double left = box_distance(&surface->nodes[at + 1], from),
+               right = box_distance(&surface->nodes[node->right], from);
+        bool left_first = left <= right;
+        stack[depth].node = left_first ? node->right : at + 1;
+        stack[depth++].square = left_first ? right : left;
+        stack[depth].node = left_first ? at + 1 : node->right;
+        stack[depth++].square = left_first ? left : right;
     }
     *nearest = surface_at(surface, nearest->triangle, nearest->weight);
     double3_subtract(from, nearest->place, away);

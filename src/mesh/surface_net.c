@@ -57,8 +57,18 @@ static void measure(Build *build)
     } while (next_point(build->net, 0, p));
 }
 
-// The mean of the points where the surface crosses the edges of the cell; false if it crosses none.
-static bool find_middle(const Build *build, const uint32_t cell[3], Double3 middle)
+// Whether some corners of the cell are inside and others are not.
+static bool is_crossed(const Build *build, const uint32_t cell[3])
+{
+    const double *first = build->value + point_at(build, cell);
+    int inside = 0;
+    for (int k = 0; k < 8; k++)
+        inside += first[(k & 1) + build->step[1] * (k >> 1 & 1) + build->step[2] * (k >> 2)] < 0.0;
+    return inside > 0 && inside < 8;
+}
+
+// The mean of the points where the surface crosses the edges of a crossed cell.
+static void find_middle(const Build *build, const uint32_t cell[3], Double3 middle)
 {
     int crossings = 0;
     Double3 sum = {0};
@@ -78,20 +88,24 @@ static bool find_middle(const Build *build, const uint32_t cell[3], Double3 midd
         double3_add_scaled(sum, 1.0, at);
         crossings++;
     }
-    for (int i = 0; i < 3 && crossings > 0; i++) middle[i] = sum[i] / crossings;
-    return crossings > 0;
+    for (int i = 0; i < 3; i++) middle[i] = sum[i] / crossings;
+}
+
+static void number_vertices(Build *build)
+{
+    uint32_t cell[3] = {0};
+    do {
+        bool crossed = is_crossed(build, cell);
+        build->vertex[point_at(build, cell)] = crossed ? build->vertex_count++ : NO_VERTEX;
+    } while (next_point(build->net, 1, cell));
 }
 
 static void place_vertices(Build *build)
 {
     uint32_t cell[3] = {0};
     do {
-        Double3 middle;
-        bool crossed = find_middle(build, cell, middle);
-        build->vertex[point_at(build, cell)] = crossed ? build->vertex_count : NO_VERTEX;
-        if (!crossed) continue;
-        if (build->place) double3_copy(middle, build->place[build->vertex_count]);
-        build->vertex_count++;
+        uint32_t vertex = build->vertex[point_at(build, cell)];
+        if (vertex != NO_VERTEX) find_middle(build, cell, build->place[vertex]);
     } while (next_point(build->net, 1, cell));
 }
 
@@ -164,16 +178,18 @@ static void split_quad(Build *build, const uint32_t quad[4])
 // Moves the point onto the surface by Newton's method.
 void surface_net_project(const SurfaceNet *net, Double3 place)
 {
-    Double3 normal;
-    for (int k = 0; k < 5; k++) {
-        net->normal(place, normal);
-        double3_add_scaled(place, -net->distance(place), normal);
+    Double3 normal, before = {0};
+    for (int k = 0; k < 5 && (k == 0 || memcmp(place, before, sizeof before) != 0); k++) {
+        double3_copy(place, before);
+        double distance = net->near(net->own, place, normal);
+        double3_add_scaled(place, -distance, normal);
     }
 }
 
 // Moves each vertex half of the way to the mean of its neighbours, tangentially to the surface.
 static void smooth(Build *build)
 {
+    const SurfaceNet *net = build->net;
     memset(build->middle, 0, build->vertex_count * sizeof *build->middle);
     memset(build->degree, 0, build->vertex_count * sizeof *build->degree);
     each_quad(build, gather_quad);
@@ -181,17 +197,17 @@ static void smooth(Build *build)
         Double3 way, normal;
         for (int i = 0; i < 3; i++)
             way[i] = build->middle[v][i] / build->degree[v] - build->place[v][i];
-        build->net->normal(build->place[v], normal);
+        net->near(net->own, build->place[v], normal);
         double3_flatten(way, normal);
         double3_add_scaled(build->place[v], 0.5, way);
-        double3_add_scaled(build->place[v], -build->net->distance(build->place[v]), normal);
+        double3_add_scaled(build->place[v], -net->near(net->own, build->place[v], NULL), normal);
     }
 }
 
 static Result make_mesh(Build *build, Error *error)
 {
     const SurfaceNet *net = build->net;
-    place_vertices(build);
+    number_vertices(build);
     uint32_t count = build->vertex_count;
     each_quad(build, count_quad);
     TRY(mesh_create(build->mesh, count, build->triangle_count, error));
@@ -200,7 +216,6 @@ static Result make_mesh(Build *build, Error *error)
     build->degree = malloc(count * sizeof *build->degree);
     if (!build->place || !build->middle || !build->degree)
         return error_set(error, RESULT_FAILED, "no memory for a mesh of %u vertices", count);
-    build->vertex_count = 0;
     place_vertices(build);
     for (uint32_t v = 0; v < count; v++) surface_net_project(net, build->place[v]);
     for (int k = 0; k < net->smoothing; k++) smooth(build);

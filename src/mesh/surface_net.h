@@ -7,7 +7,10 @@
 
 typedef struct SurfaceNet {
     double (*distance)(const Double3 at); // negative inside; gradient of about 1
-    void (*normal)(const Double3 at, Double3 normal);
+    // The same distance, and the outward unit normal unless it is NULL. `own` is the net's: what is
+    // known about the last point's neighbourhood may be kept there.
+    double (*near)(void *own, const Double3 at, Double3 normal);
+    void *own;
     double *line[3];   // positions of the grid's planes along each axis, m, increasing
     uint32_t count[3]; // at least 2; the outermost points must be outside
     int smoothing;     // rounds in which vertices move to the mean of their neighbours
