@@ -27,7 +27,9 @@ tractrix.render(strands, unit="m", shadow="deep")
 tractrix.render(strands, unit="m", wnd=(2, 0, 0))
 tractrix.render(strands, unit="m", turn_lights="maybe")
 """)
-    run = subprocess.run([shutil.which("mypy"), "--enable-incomplete-feature=Unpack", "--cache-dir", str(tmp_path), "example.py"], cwd=tmp_path,
+    # mypy compares what it keeps there with the files; numpy's types alone take it 2 s.
+    cache = pytestconfig.rootpath / "out/mypy-cache"
+    run = subprocess.run([shutil.which("mypy"), "--enable-incomplete-feature=Unpack", "--cache-dir", str(cache), "example.py"], cwd=tmp_path,
                          env={**os.environ, "MYPYPATH": str(pytestconfig.rootpath / "python")}, capture_output=True, text=True)
     wrong = sorted(int(line.split(":")[1]) for line in run.stdout.splitlines() if line.startswith("example.py:") and ": error:" in line)
     assert wrong == [7, 8, 9], run.stdout + run.stderr
