@@ -12,6 +12,13 @@ stream() {
     got=$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=codec_name,width,height,pix_fmt,nb_read_frames "$turns/$1")
     if [ "$got" = "$2" ]; then good; else bad "$1: $got, expected $2"; fi
 }
+# png FILE EXPECTED: compares width, height, bits of a channel and the type of colour (2: RGB) in the header.
+png() {
+    # shellcheck disable=SC2046 # numbers
+    set -- "$1" "$2" $(od -An -tu1 -j 16 -N 10 "$turns/$1")
+    got=$(($5 * 256 + $6)),$(($9 * 256 + ${10})),${11},${12}
+    if [ "$3$4$7$8" = 0000 ] && [ "$got" = "$2" ]; then good; else bad "$1: $got, expected $2"; fi
+}
 
 claim "a sheet and frames, and nothing else"
 # shellcheck disable=SC2086 # lists of words
@@ -78,7 +85,7 @@ if command -v ffmpeg >/dev/null; then
     # shellcheck disable=SC2086
     TRACTRIX_BIN="$work/counted" run 0 assets/fur.tfx mp4 sheet gif --contact-sheet 3x2 --every 3 -o "$work/own_sheet" $small -s 0.5 -q
     if [ "$(grep -c -- '--from-cache' "$work/runs")" = 1 ]; then good; else bad "frames were drawn more than once"; fi
-    turns=$work/own_sheet stream fur_sheet.png png,192,96,rgb24,1
+    turns=$work/own_sheet png fur_sheet.png 192,96,8,2
     turns=$work/own_sheet stream fur.gif gif,64,48,bgra,5
     for tiles in 3 0x3 08x3 3x1000 ''; do run 2 assets/fur.tfx sheet --contact-sheet "$tiles"; one_line; says "expected WxH"; done
     run 2 assets/fur.tfx gif --contact-sheet 3x2; one_line; says "expected the format sheet"
@@ -109,29 +116,29 @@ unset TURNTABLE_OUT TURNTABLE_S
 # shellcheck disable=SC2086
 run 0 -s 0.1 assets/fur.tfx frames -o "$work/own/" $small -q
 if [ "$(find "$work/own/fur" -name 'frame_*.png' | wc -l)" = 3 ]; then good; else bad "not 3 frames"; fi
-run 0 --seconds=0.04 --output="$work/long" assets/fur.tfx sheet --size 16x16 --quality draft --preroll 0 -q
+run 0 --seconds=0.04 --output="$work/long" assets/fur.tfx sheet --size 16x16 --quality draft --look plain --followers 0 --preroll 0 -q
 is_file "$work/long/fur_sheet.png"; silent err
 
 claim "results are listed; gusts repeat with a turn of --frames"
 printf '#!/bin/sh\necho "$*" >>"%s/words"\nexec "%s/tractrix-render" "$@"\n' "$work" "$bin" >"$work/heard"
 mkdir "$work/hears" && mv "$work/heard" "$work/hears/tractrix-render" && chmod +x "$work/hears/tractrix-render"
-TRACTRIX_BIN="$work/hears" run 0 assets/fur.tfx sheet frames -o "$work/told" --size 16x16 --quality draft --preroll 0 --frames 5 --fps 10 --wind 1,0,0
+TRACTRIX_BIN="$work/hears" run 0 assets/fur.tfx sheet frames -o "$work/told" --size 16x16 --quality draft --look plain --followers 0 --preroll 0 --frames 5 --fps 10 --wind 1,0,0
 says "turntable: $work/told/fur_sheet.png"; says "turntable: $work/told/fur/"
 if grep -q -- '--gust-repeat 0.5 ' "$work/words"; then good; else bad "gusts do not repeat after 5 frames of 10 a second"; fi
 
 claim "without --size: frames of 960x960 px, animations of 480x480, sheets of tiles of 320x320"
 if command -v ffprobe >/dev/null; then
-    run 0 -s 0.04 assets/fur.tfx frames gif sheet -o "$work/free" --quality draft --followers 0 --preroll 0 -q
+    run 0 -s 0.04 assets/fur.tfx frames gif sheet -o "$work/free" --quality draft --look plain --followers 0 --preroll 0 -q
     turns=$work/free
-    stream fur/frame_0000.png png,960,960,rgb24,1
+    png fur/frame_0000.png 960,960,8,2
     stream fur.gif gif,480,480,bgra,1
-    stream fur_sheet.png png,1920,1280,rgb24,1
+    png fur_sheet.png 1920,1280,8,2
 else
     skip "ffprobe is not installed"
 fi
 
 claim "options, asset and formats stand in any order"
-run 0 --size 16x16 -q --turntable 90 --turn-lights assets/fur.tfx --quality=draft sheet --preroll 0 --seconds 0.04 -o "$work/late"
+run 0 --size 16x16 -q --turntable 90 --turn-lights assets/fur.tfx --quality=draft --look plain --followers 0 sheet --preroll 0 --seconds 0.04 -o "$work/late"
 is_file "$work/late/fur_sheet.png"
 
 claim "what it can't do is refused"
