@@ -26,6 +26,10 @@ case " \$* " in
 *" --contact-sheet "* | *%*) ;;
 *" --frames 1 "* | " docs/"* | *" docs/"*.json\ * | *.png\ *) frames= ;;
 esac
+# The field of a moving mesh is made again for every frame.
+case " \$* " in
+*" assets/nod.json "*) set -- "\$@" --sdf-resolution 24 ;;
+esac
 # shellcheck disable=SC2086 # words
 exec "$(realpath "$bin")/tractrix-render" "\$@" --size 96x64 --followers 1 --smooth 1 --quality draft --preroll 0 \$frames
 END
