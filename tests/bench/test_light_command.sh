@@ -37,7 +37,7 @@ same "$(field "$work/straight.csv" verdict | grep -c holds)" 4 "rows of cases th
 claim "the mean of straight blond hair is within 0.85 to 1.15 of our own path tracer's"
 mkdir "$work/blond"
 cp tests/data/light_traced/* "$work/straight/straight6k.tfx" "$work/blond/"
-run 1 light --reference "$work/blond" --way grid --frames 0 --csv "$work/blond.csv"
+run 1 light --reference "$work/blond" --case straight_blond_front,straight_blond_side --way grid --frames 0 --csv "$work/blond.csv"
 for channel in r g b; do
     same "$(field "$work/blond.csv" mean_$channel | head -2 | awk '{ good += $1 > 0.85 && $1 < 1.15 } END { print good }')" 2 "means of $channel"
 done
@@ -63,10 +63,10 @@ for name in coverage mean_r mean_g mean_b; do
         awk '{ value[NR] = $1 } END { print NR, (value[1] > 0.9 && (value[1] - value[2]) ^ 2 < 0.005 ^ 2) }')" "2 1" "$name"
 done
 
-# A picture has two tiles of 16 x 16.
+# A picture has two tiles of 16 x 16. The simple lights of the traced cases cost less than those of the look.
 claim "a folder of one's own, with a picture of it"
 mkdir "$work/own"
-printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [16, 16], "shadow": "dom"}' >"$work/own/one.json"
+printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [16, 16], "shadow": "dom", "sky": "#808080", "lights": [{"direction": [0, -1, 0]}]}' >"$work/own/one.json"
 "$bin/tractrix-gen" --kind fur --count 40 --vertices 8 --seed 1 -q -o "$work/own/hair.tfx"
 table() {
     echo column,row,one_r,one_g,one_b,all_r,all_g,all_b,coverage
@@ -114,7 +114,7 @@ run 3 trace "$work/trace/odd.json"; says "the image has 16x20 pixels: expected m
 claim "an image that is the tracer's has a mean of 1 and a rel of 0"
 # The mean of the first run's image over the table gives the table's values for the image. A single block has no other
 # shape.
-printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [8, 8], "shadow": "dom"}' >"$work/own/one.json"
+printf '{"sections": [{"file": "hair.tfx", "unit": "m", "algo": "none", "shading": "marschner"}], "size": [8, 8], "shadow": "dom", "sky": "#808080", "lights": [{"direction": [0, -1, 0]}]}' >"$work/own/one.json"
 table 0.1 | head -2 >"$work/own/one.csv"
 run 1 light --reference "$work/own" --case one --way none --frames 1 --csv "$work/first.csv"
 light() { field "$work/first.csv" "mean_$1" | head -1 | awk -v traced="$2" '{ printf "%.12g", $1 * traced }'; }
