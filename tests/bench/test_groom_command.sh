@@ -10,6 +10,7 @@ field() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == na
 same() { if [ "$1" = "$2" ]; then good; else bad "$3: got '$1', expected '$2'"; fi; }
 # true_of WHAT CONDITION: CONDITION is an awk expression.
 true_of() { if awk "BEGIN { exit !($2) }"; then good; else bad "$1: $2"; fi; }
+coarse="--sdf-resolution 24" # the field of a head is made for every run; the head is a sphere
 "$bin/tractrix-gen" --kind curls --shape sphere --count 40 --vertices 12 --length 0.3 --curl-radius 0.01 --curl-turns 2 --seed 1 -q -o "$work/hair.tfx" --mesh "$work/head.obj"
 
 claim "hair that is carried stiff is the groom, at rest and in the shake, and holds the bounds"
@@ -23,7 +24,7 @@ same "$(field "$work/none.csv" verdict)" holds "verdict"
 same "$(grep -c '"algo"' "$work/none.json")" 1 "rows of JSON"
 
 claim "every solver keeps the groom on its head"
-run 0 groom "$work/hair.tfx" --mesh "$work/head.obj" --rates 60 --part rest --csv "$work/all.csv"
+run 0 groom "$work/hair.tfx" --mesh "$work/head.obj" --rates 60 --part rest --render="$coarse" --csv "$work/all.csv"
 same "$(field "$work/all.csv" algo | wc -l) $(field "$work/all.csv" verdict | sort -u)" "8 holds" "rows and verdicts"
 
 claim "hair that the wind blows away breaks the bound"
@@ -43,7 +44,7 @@ same "$(field "$work/again.csv" rest)" "$(field "$work/few.csv" rest)" "the repe
 claim "locks hold together in a shake in the wind, followers too; hair that nothing holds falls apart"
 "$bin/tractrix-gen" fur "$work/head.obj" --count 600 --guides 100 --clumps 20 --clump 0.85 --vertices 12 --length 0.2 --gravity-bend 40 --seed 1 -q -o "$work/locks.tfx"
 while read -r followers least; do
-    run 0 groom "$work/locks.tfx" --mesh "$work/head.obj" --algo hybrid --rates 60 --part shake --render="--wind 6,0,0 --followers $followers" --csv "$work/locks.csv"
+    run 0 groom "$work/locks.tfx" --mesh "$work/head.obj" --algo hybrid --rates 60 --part shake --render="--wind 6,0,0 --followers $followers $coarse" --csv "$work/locks.csv"
     true_of "together with $followers followers" "$(field "$work/locks.csv" together) >= $least && $(field "$work/locks.csv" together) < 1"
 done <<END
 0 0.92
@@ -56,7 +57,7 @@ same "$(field "$work/rates.csv" rate | tr '\n' ' ')" "30 120 " "rates"
 same "$(field "$work/rates.csv" settings | sort -u) $(field "$work/rates.csv" verdict | sort -u)" "--style 0.9 " "settings and verdict"
 
 claim "hair swings more without a style, and hair that does not collide is deeper in the head"
-measure() { "$program" groom "$work/hair.tfx" --mesh "$work/head.obj" --algo chain --rates 60 --part shake --csv "$work/m.csv" "$@" >/dev/null 2>&1; }
+measure() { "$program" groom "$work/hair.tfx" --mesh "$work/head.obj" --algo chain --rates 60 --part shake --csv "$work/m.csv" --render="$coarse" "$@" >/dev/null 2>&1; }
 measure --style 0.9; stiff=$(field "$work/m.csv" swing)
 measure --style 0; loose=$(field "$work/m.csv" swing) out=$(field "$work/m.csv" deep_shake)
 same "$(field "$work/m.csv" head)" mesh "head"
