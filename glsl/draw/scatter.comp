@@ -45,29 +45,41 @@ float blur(float x, float width)
     return (g.x + g.y) / (width * sqrt(2.0 * PI));
 }
 
+const int QUADS = SCATTER_COLORS / 4;
+
 void main()
 {
-    ivec3 node = ivec3(gl_GlobalInvocationID) * ivec3(1, 1, 4);
+    ivec2 node = ivec2(gl_GlobalInvocationID);
     if (node.x >= SCATTER_AZIMUTHS) return;
     float eta = fibre.x, width = fibre.y, phi = PI * float(node.x) / float(SCATTER_AZIMUTHS - 1);
     float cos_d = max(float(node.y) / float(SCATTER_INCLINATIONS - 1), 1e-3),
           sin2_d = 1.0 - cos_d * cos_d;
     float eta_d = sqrt(eta * eta - sin2_d) / cos_d, cos_t = sqrt(1.0 - sin2_d / (eta * eta));
-    vec4 depth = log2(max((vec4(node.z) + vec4(0, 1, 2, 3)) / float(SCATTER_COLORS - 1), 1e-30));
     float reflected = 0.0;
-    vec4 through = vec4(0.0), inside = vec4(0.0);
+    vec4 depth[QUADS], through[QUADS], inside[QUADS]; // four colours each
+    for (int c = 0; c < QUADS; ++c) {
+        vec4 color = (vec4(4 * c) + vec4(0, 1, 2, 3)) / float(SCATTER_COLORS - 1);
+        depth[c] = log2(max(color, 1e-30));
+        through[c] = inside[c] = vec4(0.0);
+    }
     for (int i = 0; i < STEPS; ++i) {
         float gamma_i = (float(i) + 0.5) * (PI / float(STEPS)) - 0.5 * PI,
               gamma_t = asin(sin(gamma_i) / eta_d);
         float cos_i = cos(gamma_i), share = cos_i * (0.5 * PI / float(STEPS));
         float f = fresnel(eta, cos_d * cos_i), in_and_out = share * (1.0 - f) * (1.0 - f);
-        vec4 t = exp2(depth * (cos(gamma_t) / cos_t));
+        float chord = cos(gamma_t) / cos_t;
+        float once = in_and_out * blur(phi - 2.0 * gamma_t + 2.0 * gamma_i - PI, width),
+              twice = in_and_out * f * blur(phi - 4.0 * gamma_t + 2.0 * gamma_i - 2.0 * PI, width);
         reflected += share * f * blur(phi + 2.0 * gamma_i, width);
-        through += in_and_out * blur(phi - 2.0 * gamma_t + 2.0 * gamma_i - PI, width) * t;
-        inside +=
-            in_and_out * f * blur(phi - 4.0 * gamma_t + 2.0 * gamma_i - 2.0 * PI, width) * t * t;
-        inside += in_and_out * f * f * t * t * t / (1.0 - f * t) / (2.0 * PI);
+        for (int c = 0; c < QUADS; ++c) {
+            vec4 t = exp2(depth[c] * chord);
+            through[c] += once * t;
+            inside[c] += twice * t * t;
+            inside[c] += in_and_out * f * f * t * t * t / (1.0 - f * t) / (2.0 * PI);
+        }
     }
-    for (int k = 0; k < 4; ++k)
-        imageStore(table, node + ivec3(0, 0, k), vec4(reflected, through[k], inside[k], 0.0));
+    for (int c = 0; c < QUADS; ++c)
+        for (int k = 0; k < 4; ++k)
+            imageStore(table, ivec3(node, 4 * c + k),
+                       vec4(reflected, through[c][k], inside[c][k], 0.0));
 }

@@ -8,12 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    GROUP_SIZE = 32,
-    COLORS_EACH = 4,
-    NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS
-};
-_Static_assert(SCATTER_COLORS % COLORS_EACH == 0, "scatter.comp makes so many at a time");
+enum { GROUP_SIZE = 32, NODES = SCATTER_AZIMUTHS * SCATTER_INCLINATIONS * SCATTER_COLORS };
+_Static_assert(SCATTER_COLORS % 4 == 0, "scatter.comp makes four at a time");
 
 typedef struct Fibre {
     float refraction, roughness;
@@ -50,8 +46,7 @@ static Result fill(GLuint texture, const Fibre *fibre, Error *error)
     glBindImageTexture(0, texture, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     glUseProgram(program);
     glUniform2f(0, fibre->refraction, fibre->roughness);
-    glDispatchCompute((SCATTER_AZIMUTHS + GROUP_SIZE - 1) / GROUP_SIZE, SCATTER_INCLINATIONS,
-                      SCATTER_COLORS / COLORS_EACH);
+    glDispatchCompute((SCATTER_AZIMUTHS + GROUP_SIZE - 1) / GROUP_SIZE, SCATTER_INCLINATIONS, 1);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
     shader_release(program);
     return gpu_check("the table of marschner shading", error);
