@@ -35,7 +35,6 @@ void lane_shadow_destroy(LaneShadow *shadow)
 static Result make_room(LaneShadow *shadow, int maps, Error *error)
 {
     size_t side = (size_t)shadow->options.side, words = shadow_map_layer_words(&shadow->map);
-    TRY(shadow_map_reserve(&shadow->map, maps, error));
     if (shadow->room >= maps) return RESULT_OK;
     free_maps(shadow);
     shadow->depths = room_new((size_t)maps * side * side, sizeof *shadow->depths);
@@ -78,6 +77,7 @@ static Result draw_maps(LaneShadow *shadow, const LaneShadowScene *scene, Shadow
     TRY(make_room(shadow, frames->params.maps, error));
     TRY(shadow_sample_take(&shadow->sample, scene->casters, shadow->options.strands,
                            shadow->map.parts, &casters, error));
+    TRY(shadow_map_reserve(&shadow->map, frames->params.maps, casters, error));
     tile_order_find(&shadow->order, shadow->sample.casters, casters.count);
     shadow_map_draw(&shadow->map, frames->casts, frames->params.maps, casters, shadow->depths,
                     shadow->layers);

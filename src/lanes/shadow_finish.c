@@ -25,7 +25,7 @@ static float *merge_firsts(ShadowMap *shadow, int map)
 {
     size_t texels = texels_of(shadow), step = texels * (size_t)shadow->at_once;
     float *first = shadow->first + (size_t)map * texels;
-    for (int part = 1; part < shadow->parts; ++part) {
+    for (int part = 1; part < shadow->drawers; ++part) {
         const float *other = first + (size_t)part * step;
         for (size_t i = 0; i < texels; ++i) first[i] = simd_min(other[i], first[i]);
     }
@@ -126,7 +126,7 @@ SIMD_INLINE void gather_row(const ShadowMap *shadow, int map, int row, float *li
         const uint32_t *sums =
             shadow->sums + (size_t)map * words + ((size_t)row * LAYERS + layer) * wide;
         for (int x = 0; x < side; ++x) line[x + 1] = (float)(int)sums[x];
-        for (int part = 1; part < shadow->parts; ++part) {
+        for (int part = 1; part < shadow->drawers; ++part) {
             sums += step;
             for (int x = 0; x < side; ++x) line[x + 1] += (float)(int)sums[x];
         }

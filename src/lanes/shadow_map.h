@@ -14,18 +14,21 @@ enum {
     SHADOW_MAP_LINES = 3 * SHADOW_LAYERS + 1 // three rows of all layers, and one more
 };
 
-// Memory for making maps. Each thread draws into sums of its own, which are then added up. Fewer
-// threads are used if the sums would take more than 256 MiB.
+// Memory for making maps. Each thread that draws hair has sums of its own, which are then added up.
+// Fewer threads are used if the sums would take more than 256 MiB. Little hair is drawn by fewer
+// threads, too, since clearing a thread's sums and adding them up would take longer than drawing.
 typedef struct ShadowMap {
     int side, coarse; // texels across a map and across that of the first depths
     int tiles;        // SHADOW_MAP_TILEs in a row
     int wide; // row length of `sums` in a layer, chosen so that rows do not share cache lines
     bool deep;
-    int parts;
+    int parts;      // threads
     float last;     // LAYER_END: not a constant, because compilers would add jumps
-    int at_once;    // number of maps that the arrays below have room for
-    float *first;   // [parts][at_once][coarse][coarse], owned; 1: no hair
-    uint32_t *sums; // [parts][at_once][side][SHADOW_LAYERS][wide], owned, deep
+    int drawers;    // threads that draw hair
+    int at_once;    // number of maps that are drawn together
+    int room;       // number of maps in the arrays below: at least drawers * at_once
+    float *first;   // [drawers][at_once][coarse][coarse], owned; 1: no hair
+    uint32_t *sums; // [drawers][at_once][side][SHADOW_LAYERS][wide], owned, deep
     float *least;   // [parts][4][coarse + 4], owned, deep: for shadow_finish.c
     float *rows;    // [parts][SHADOW_MAP_LINES][side + 2], owned, deep: the same
 } ShadowMap;
@@ -35,9 +38,10 @@ typedef struct ShadowMap {
 Result shadow_map_create(ShadowMap *shadow, int side, bool deep, Error *error);
 void shadow_map_destroy(ShadowMap *shadow);
 
-// Makes room to draw this many maps. As many are drawn at once as fit into 256 MiB. RESULT_FAILED
-// if memory is short.
-Result shadow_map_reserve(ShadowMap *shadow, int maps, Error *error);
+// Makes room to draw this many maps of this hair. As many are drawn at once as fit into 256 MiB,
+// but little hair is drawn to one map after the other, in the same memory. RESULT_FAILED if memory
+// is short.
+Result shadow_map_reserve(ShadowMap *shadow, int maps, MappedCasters casters, Error *error);
 
 // Words of the layers of one map.
 size_t shadow_map_layer_words(const ShadowMap *shadow);

@@ -268,7 +268,7 @@ SIMD_INLINE void lay_hair(const ShadowSplat *splat, int part, bool deep)
         const MappedCaster *caster = &splat->casters.list[c];
         float weight = caster->weight > 0 ? caster->weight : 1;
         int range[2];
-        find_range(caster, part, shadow->parts, range);
+        find_range(caster, part, shadow->drawers, range);
         for (int t = range[0]; t < range[1]; ++t) {
             Tile tile = open_tile(caster, t);
             lay_tile(&brush, &tile, weight, deep);
@@ -289,5 +289,5 @@ SIMD_STAGE(splat, ShadowSplat)
 
 void shadow_splat_draw(ShadowSplat *all)
 {
-    run_splat(all, all->shadow->parts);
+    run_splat(all, all->shadow->drawers);
 }

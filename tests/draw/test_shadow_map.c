@@ -73,8 +73,8 @@ static void c_makes_the_same_maps_with_any_thread_count(void **state)
 {
     (void)state;
     enum { SIDE = 64, TEXELS = SIDE * SIDE, STRANDS = 10 * STRAND_TILE, N = 6 };
-    static float position[STRANDS * N][4], depths[2][TEXELS];
-    static uint32_t layers[2][TEXELS * SHADOW_LAYERS];
+    static float position[STRANDS * N][4], depths[2][2 * TEXELS];
+    static uint32_t layers[2][2 * TEXELS * SHADOW_LAYERS];
     Random random = random_create(7, 0);
     for (int i = 0; i < STRANDS * N; ++i) {
         for (int k = 0; k < 3; ++k) position[i][k] = (float)random_real(&random);
@@ -89,22 +89,38 @@ static void c_makes_the_same_maps_with_any_thread_count(void **state)
                                               .drawn_strands = STRANDS - 3,
                                               .last_strand = STRANDS - 4,
                                               .last_share = 0.4f}};
-    const CastParams params = {
+    const CastParams along = {
         .side = SIDE,
         .unit = 1000,
         .texels = SIDE,
         .from_world = {{SIDE, 0, 0, 0}, {0, SIDE, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    CastParams params[2] = {along, along}; // the second light shines along y
+    for (int i = 1; i < 3; ++i) glm_vec4_zero(params[1].from_world[i]);
+    params[1].from_world[1][2] = SIDE, params[1].from_world[2][1] = 1;
+    MappedCaster much = caster;
+    much.material.drawn_strands = 1 << 20;
     ShadowMap shadow;
     NEEDED(shadow_map_create(&shadow, SIDE, true, error));
-    NEEDED(shadow_map_reserve(&shadow, 1, error));
-    for (int parts = shadow.parts; parts >= 1; --parts) {
-        int at = parts == shadow.parts ? 0 : 1;
-        ShadowMap some = shadow;
-        some.parts = parts;
-        shadow_map_draw(&some, &params, 1, (MappedCasters){&caster, 1}, depths[at], layers[at]);
-        assert_memory_equal(depths[at], depths[0], sizeof depths[0]);
-        assert_memory_equal(layers[at], layers[0], sizeof layers[0]);
-    }
+    NEEDED(shadow_map_reserve(&shadow, 2, (MappedCasters){&much, 1}, error));
+    assert_int_equal(shadow.drawers, shadow.parts);
+    assert_int_equal(shadow.at_once, 2);
+    for (int at_once = 2; at_once >= 1; --at_once)
+        for (int parts = shadow.parts; parts >= 1; --parts) {
+            int at = parts == shadow.parts && at_once == 2 ? 0 : 1;
+            ShadowMap some = shadow;
+            some.parts = some.drawers = parts;
+            some.at_once = at_once;
+            shadow_map_draw(&some, params, 2, (MappedCasters){&caster, 1}, depths[at], layers[at]);
+            assert_memory_equal(depths[at], depths[0], sizeof depths[0]);
+            assert_memory_equal(layers[at], layers[0], sizeof layers[0]);
+        }
+    assert_memory_not_equal(layers[0], layers[0] + TEXELS * SHADOW_LAYERS, sizeof layers[0] / 2);
+    // Little hair: one thread draws to the sums of one map.
+    NEEDED(shadow_map_reserve(&shadow, 2, (MappedCasters){&caster, 1}, error));
+    assert_int_equal(shadow.drawers, 1);
+    assert_int_equal(shadow.at_once, 1);
+    shadow_map_draw(&shadow, params, 2, (MappedCasters){&caster, 1}, depths[1], layers[1]);
+    assert_memory_equal(layers[1], layers[0], sizeof layers[0]);
     const int middle = TEXELS / 2 + SIDE / 2; // a place with hair
     assert_true(depths[0][middle] < 1 &&
                 layers[0][((size_t)middle / STRAND_TILE * SHADOW_LAYERS + SHADOW_LAYERS - 1) *
