@@ -120,8 +120,13 @@ goldens 1; one_line; says "no tractrix-render in $work"
 TRACTRIX_BIN=$(realpath "$bin")
 printf 'long_%%d assets/curls.tfx --algo none --followers 0 --look plain --size 48x36 --frames 100000\nafter %s\n' "$small" >"$work/list"
 for signal in INT TERM; do
-    timeout --preserve-status -s $signal 3 "$program" "$work/list" "$work/goldens" "$work/result" >"$work/out" 2>"$work/err"
+    rm -rf "$work/result"
+    # `timeout` passes the signal on to all processes of the script, as a terminal does.
+    (until [ -e "$work/result/frames/long_1.png" ]; do sleep 0.05; done; kill -s $signal "$(cat "$work/pid")") &
+    # shellcheck disable=SC2016 # the inner shell's
+    sh -c 'echo $$ >"$0"; exec timeout --preserve-status 60 "$@"' "$work/pid" "$program" "$work/list" "$work/goldens" "$work/result" >"$work/out" 2>"$work/err"
     status=$?
+    kill $! 2>/dev/null; wait
     if [ $status = 130 ]; then good; else bad "exit status $status after SIG$signal"; fi
     silent out; none "$work/result/frames/after.png"; none "$work/result/report.json"
 done
