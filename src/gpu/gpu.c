@@ -256,13 +256,14 @@ static void APIENTRY print_message(GLenum source, GLenum type, GLuint id, GLenum
 
 static Result refuse(const Search *search, Error *error)
 {
-    Error sign;
+    Error sign = {{0}}; // of a GPU that was not used
     if (asks_for_device(&search->options))
         return error_set(error, RESULT_NO_GL,
                          "--device %s: no such device: %s (see --list-devices)",
                          search->options.device,
                          *search->attempts.text ? search->attempts.text : "there are fewer");
-    gpu_device_explain("/dev", &sign);
+    if (!search->options.software && search->options.backend != BACKEND_OSMESA)
+        gpu_device_explain("/dev", &sign);
     return error_set(error, RESULT_NO_GL,
                      "no usable OpenGL 4.3 (%s%s%s): expected a GPU with its driver, or a CPU "
                      "driver (on Debian the packages libegl1, libopengl0 and libgl1-mesa-dri); a "

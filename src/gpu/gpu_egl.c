@@ -68,13 +68,20 @@ static GpuDevice describe(void *egl)
     return device;
 }
 
+// EGL_EXT_device_base is the older extension that was split into the enumeration and the query of
+// devices; NVIDIA's driver names only this one.
+static bool can_enumerate(void)
+{
+    return epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
+           (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base") ||
+            epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration"));
+}
+
 Result gpu_egl_find_devices(GpuDevices *devices, Error *error)
 {
     *devices = (GpuDevices){0};
     TRY(require_libraries(error));
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
-        !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration"))
-        return error_set(error, RESULT_NO_GL, "EGL can't enumerate devices");
+    if (!can_enumerate()) return error_set(error, RESULT_NO_GL, "EGL can't enumerate devices");
     void *found[GPU_MOST_DEVICES];
     if (!eglQueryDevicesEXT(GPU_MOST_DEVICES, found, &devices->count))
         return fail("eglQueryDevicesEXT", error);
