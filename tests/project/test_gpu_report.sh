@@ -3,6 +3,7 @@
 # scripts/gpu-report with the CPU driver: its page and its JSON have the measurements, and the failures.
 . tests/support/claims.sh
 if ! command -v python3 >/dev/null; then skip 'no python3'; finish; fi
+if ! has_driver llvmpipe; then skip 'no CPU driver'; finish; fi
 program=scripts/gpu-report
 
 # The programs, with a wrapper that draws simple images.

@@ -400,11 +400,18 @@ static void sitting_draw_case(Sitting exact[2], const Case *c)
     }
 }
 
-static void compare_case(Studio *studio, const Case *c, const Sitting *exact, const char *what,
+// Sums of many layers in half floats that round towards zero (studio_rounding): levels of 255.
+// Opacity of `thick hair` has this further error on an NVIDIA H100, with any number of samples.
+static const double ROUNDED_DOWN = 0.5;
+
+// Whether the renderer's image is as near to the exact image as the bound says.
+static bool compare_case(Studio *studio, const Case *c, const Sitting *exact, const char *what,
                          double bound)
 {
     const uint8_t nothing[4] = {0};
     bool clear = exact->image.channels == 4;
+    if (clear && studio->renderer.options.raster == RASTER_QUADS && studio_rounding(studio) > 1)
+        bound = hypot(bound, ROUNDED_DOWN);
     uint32_t item = studio_add(studio, &exact->strands[0], c->radius, c->opacity);
     dress(&studio->material[item], c->tip_ratio);
     studio->light = LIGHT;
@@ -413,7 +420,7 @@ static void compare_case(Studio *studio, const Case *c, const Sitting *exact, co
     print_message("%s, %s, %s: RMS %.2f of 255, bound %.2f\n", what, c->name,
                   clear ? "opacity" : "colour", rms, bound);
     studio_clear(studio);
-    if (rms > bound) fail_msg("%s, %s: RMS %.2f of 255, bound %.2f", what, c->name, rms, bound);
+    return rms <= bound;
 }
 
 // Both rasterisers, with 1, 2 x 2 and 4 x 4 samples per pixel, colour and opacity.
@@ -422,6 +429,7 @@ static void compare_cases(const Case *cases, size_t count)
     static const char *const names[] = {"quads",  "quads, 2 x 2",  "quads, 4 x 4",
                                         "blocks", "blocks, 2 x 2", "blocks, 4 x 4"};
     Sitting exact[MOST_CASES][2];
+    int too_far = 0;
     assert_true(count <= MOST_CASES);
     for (size_t i = 0; i < count; ++i) sitting_draw_case(exact[i], &cases[i]);
     for (int kind = 0; kind < 6; ++kind)
@@ -435,12 +443,13 @@ static void compare_cases(const Case *cases, size_t count)
             memcpy(options.background, clear ? TRANSPARENT : DARK, sizeof DARK);
             studio_open(&studio, &options);
             for (size_t i = 0; i < count; ++i)
-                compare_case(&studio, &cases[i], &exact[i][clear], names[kind],
-                             cases[i].bound[clear][kind / 3][kind % 3]);
+                too_far += !compare_case(&studio, &cases[i], &exact[i][clear], names[kind],
+                                         cases[i].bound[clear][kind / 3][kind % 3]);
             studio_close(&studio);
         }
     for (size_t i = 0; i < count; ++i)
         for (int clear = 0; clear < 2; ++clear) sitting_close(&exact[i][clear]);
+    assert_int_equal(too_far, 0);
 }
 
 // The remaining errors: rasterisers assume that a pixel's ribbons are spread evenly and

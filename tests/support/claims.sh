@@ -35,6 +35,8 @@ no_files() { if [ -z "$(ls -A "$1" 2>/dev/null)" ]; then good; else bad "left be
 equal() { if cmp -s "$1" "$2"; then good; else bad "$1 and $2 are not equal"; fi; }
 # same_images A B: two images, or the images of two folders, have the same pixels; their texts may differ.
 same_images() { holds "$bin/tractrix-compare" -q "$1" "$2"; }
+# has_driver NAME: tractrix-render can use a driver of this name (a pattern).
+has_driver() { "$bin/tractrix-render" --list-devices | grep -E -- "$1" | grep -qv 'not usable'; }
 
 finish() {
     echo "$passed passed, $failed failed, $skipped skipped"
