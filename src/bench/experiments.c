@@ -93,16 +93,15 @@ static bool set_velocity(const Run *run)
     const double *v = run->setup->velocity;
     const HairBatch *batch = &run->trial.hair.batches[0];
     const float velocity[4] = {(float)v[0], (float)v[1], (float)v[2], 0};
-    size_t offset = sizeof velocity; // the velocity follows the tip's position
+    int64_t offset = sizeof velocity; // the velocity follows the tip's position
     if (v[0] == 0 && v[1] == 0 && v[2] == 0) return true;
     const GpuBuffer *buffer = trial_buffer(&run->trial, 0, SOLVER_TIPS);
     if (!buffer) {
         buffer = trial_buffer(&run->trial, 0, SOLVER_VELOCITIES);
-        offset = hair_address(batch, 0, batch->vertex_count - 1) * sizeof velocity;
+        offset = (int64_t)(hair_address(batch, 0, batch->vertex_count - 1) * sizeof velocity);
     }
     if (!buffer) return false;
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, sizeof velocity, velocity);
+    gpu_buffer_write(buffer, offset, velocity, sizeof velocity);
     return true;
 }
 

@@ -86,6 +86,31 @@ void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word)
                          GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
+// Writes by way of a buffer of its own and a copy, which the GPU executes in order.
+static void write_copy(int64_t at, const void *data, int64_t size)
+{
+    GLuint staging;
+    glGenBuffers(1, &staging);
+    glBindBuffer(GL_COPY_READ_BUFFER, staging);
+    glBufferData(GL_COPY_READ_BUFFER, (GLsizeiptr)size, data, GL_STREAM_DRAW);
+    glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, (GLintptr)at,
+                        (GLsizeiptr)size);
+    glDeleteBuffers(1, &staging);
+}
+
+// NVIDIA's driver 580 does not let glBufferSubData wait for queued passes that use the buffer, if
+// it has no texture and was bound as storage only, at a point where another buffer is bound now;
+// no barrier helps (tests/gpu/test_gpu_buffer.c).
+void gpu_buffer_write(const GpuBuffer *buffer, int64_t at, const void *data, int64_t size)
+{
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, buffer->buffer);
+    if (buffer->texture)
+        glBufferSubData(GL_COPY_WRITE_BUFFER, (GLintptr)at, (GLsizeiptr)size, data);
+    else
+        write_copy(at, data, size);
+}
+
 void *gpu_buffer_read(const GpuBuffer *buffer)
 {
     void *content = malloc((size_t)buffer->size + 1);

@@ -34,6 +34,10 @@ void gpu_buffer_destroy(GpuBuffer *buffer);
 // Sets every 4 bytes to `word`. Only queues GPU work.
 void gpu_buffer_clear(const GpuBuffer *buffer, uint32_t word);
 
+// Replaces the bytes from `at` to `at + size`, after everything that was queued before has used
+// them. Only queues GPU work.
+void gpu_buffer_write(const GpuBuffer *buffer, int64_t at, const void *data, int64_t size);
+
 // A copy of the content after all earlier passes, which the caller frees. NULL when memory is
 // short, here or in the driver, or if an earlier call left an error. Waits for the GPU.
 void *gpu_buffer_read(const GpuBuffer *buffer);

@@ -110,8 +110,7 @@ Result abuffer_begin(ABuffer *abuffer, int rows, const int box[4], Error *error)
                            error));
     clear(&abuffer->heads, size);
     clear(&abuffer->counters, abuffer->counters.size);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, abuffer->extent.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 16, box);
+    gpu_buffer_write(&abuffer->extent, 0, box, 16);
     gpu_buffer_bind_storage(&abuffer->nodes, BIND_NODES_OUT);
     gpu_buffer_bind_storage(&abuffer->heads, BIND_HEADS_OUT);
     gpu_buffer_bind_storage(&abuffer->counters, BIND_COUNTERS_OUT);

@@ -128,8 +128,7 @@ Result cull_list(Cull *cull, const HairBatch *batch, const MaterialParams *part,
 {
     const GLuint none[HEAD_WORDS] = {0};
     TRY(use(cull, batch, part->smooth_parts > 1, error));
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, cull->listed.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+    gpu_buffer_write(&cull->listed, 0, none, sizeof none);
     gpu_buffer_bind_storage(&cull->tally, BIND_TALLY_OUT);
     gpu_buffer_bind_storage(&cull->listed, BIND_LISTED_OUT);
     gpu_dispatch(cull->limits, part->drawn_strands, (uint64_t)cull->limits->sizes.strands, 1);

@@ -167,20 +167,19 @@ float hair_shadow_unordered(int32_t bits)
 static void find_boxes(HairShadow *hair, const ShadowFrames *frames, ShadowCasters casters,
                        double (*boxes)[6])
 {
-    GLint words[MAX_LIGHTS][BOX_WORDS];
+    GLint words[MAX_LIGHTS][BOX_WORDS] = {0};
     int count = frames->count;
-    GLsizeiptr size = (GLsizeiptr)((size_t)count * sizeof *words);
+    int64_t size = (int64_t)((size_t)count * sizeof *words);
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < BOX_WORDS; ++k) words[i][k] = k < 3 ? INT32_MAX : INT32_MIN;
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
+    gpu_buffer_write(&hair->box, 0, words, size);
     gpu_buffer_bind_storage(&hair->box, BIND_BOUNDS_OUT);
     for (int i = 0; i < count; ++i) {
         CastParams params = shadow_frames_box(frames, i);
         cast(hair, casters, &params, NULL, PART_VERTICES);
     }
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, hair->box.buffer);
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, size, words);
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, words);
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < BOX_WORDS; ++k)
             boxes[i][k] = (double)hair_shadow_unordered(words[i][k]);

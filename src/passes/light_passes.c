@@ -81,11 +81,9 @@ static Result upload_kinds(LightPasses *passes, const GridScene *scene, FieldTab
     if (mine->buffer.buffer && memcmp(&made, &mine->made, sizeof made) == 0) return RESULT_OK;
     TRY(upload(passes, &mine->buffer, "fibre table", NULL, bytes * (size_t)made.kinds,
                table == FIELD_CONE ? GL_RGBA32F : GL_R32F, error));
-    for (int k = 0; k < made.kinds && bytes; ++k) {
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, mine->buffer.buffer);
-        glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(bytes * (size_t)k), (GLsizeiptr)bytes,
-                        light_field_table(&kinds[k], table));
-    }
+    for (int k = 0; k < made.kinds && bytes; ++k)
+        gpu_buffer_write(&mine->buffer, (int64_t)bytes * k, light_field_table(&kinds[k], table),
+                         (int64_t)bytes);
     mine->made = made;
     return RESULT_OK;
 }

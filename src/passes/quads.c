@@ -50,12 +50,6 @@ static Result make_scratch(QuadRibbons *hair, uint32_t strands, uint32_t vertex_
     return gpu_buffer_reserve(&hair->command, limits, "draw command", COMMAND_WORDS * 4, 0, error);
 }
 
-static void write(const GpuBuffer *buffer, int64_t at, const void *data, size_t size)
-{
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)at, (GLsizeiptr)size, data);
-}
-
 static Result project(QuadRibbons *hair, const GpuLimits *limits, const HairBatch *batch,
                       const Look *look, Cull *cull, Error *error)
 {
@@ -68,7 +62,7 @@ static Result project(QuadRibbons *hair, const GpuLimits *limits, const HairBatc
     THEN(result, look_programs_use(&hair->project, look, batch, error));
     if (result != RESULT_OK) return result;
     glUniform2i(0, (GLint)material->drawn_strands, cull->tries);
-    write(&hair->command, 0, command, sizeof command);
+    gpu_buffer_write(&hair->command, 0, command, sizeof command);
     gpu_buffer_bind_texture(&batch->strand_id, BIND_STRAND_ID);
     gpu_buffer_bind_storage(&hair->edges, BIND_EDGES_OUT);
     gpu_buffer_bind_storage(&hair->shades, BIND_SHADES_OUT);

@@ -63,10 +63,8 @@ void render_mesh_move(RenderMesh *mesh, const Mesh *moved)
 {
     if (!mesh->triangle_count) return;
     find_bounds(mesh, moved);
-    glBindBuffer(GL_ARRAY_BUFFER, mesh->position.buffer);
-    glBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)mesh->position.size, moved->position);
-    glBindBuffer(GL_ARRAY_BUFFER, mesh->normal.buffer);
-    glBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)mesh->normal.size, moved->normal);
+    gpu_buffer_write(&mesh->position, 0, moved->position, mesh->position.size);
+    gpu_buffer_write(&mesh->normal, 0, moved->normal, mesh->normal.size);
 }
 
 static void add_attribute(const RenderMesh *mesh, GLuint place, GLint width,

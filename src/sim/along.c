@@ -82,9 +82,8 @@ void along_fill(Along *along, const SolverStep *step, const void *mean)
         for (uint32_t j = lead; j < n; ++j)
             fill_vertex(along, step, mean, (double)j / (n - 1), along->texels[2 * (j - lead)],
                         along->texels[2 * (j - lead) + 1]);
-        glBindBuffer(GL_COPY_WRITE_BUFFER, along->tables[i].buffer);
-        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)(2 * n * sizeof *along->texels),
-                        along->texels);
+        gpu_buffer_write(&along->tables[i], 0, along->texels,
+                         (int64_t)(2 * n * sizeof *along->texels));
     }
 }
 

@@ -202,15 +202,12 @@ static void fill(Bound *bound, const double *time, int times, int texels, FillSt
                        .fill = fill_strand,
                        .data = data};
     for (int i = goes_on; i < times; ++i) filling.poses[i] = bound_body_pose(bound->body, time[i]);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < bound->hair->batch_count; ++i) {
         filling.batch = &bound->hair->batches[i];
         filling.content = content;
         parallel_run(filling.parts, fill_part, &filling);
-        glBindBuffer(GL_COPY_WRITE_BUFFER, bound->frames[i].buffer);
-        glBufferSubData(GL_COPY_WRITE_BUFFER, 0,
-                        (GLsizeiptr)((size_t)texels * hair_slots(filling.batch) * sizeof(Float4)),
-                        content);
+        gpu_buffer_write(&bound->frames[i], 0, content,
+                         (int64_t)((size_t)texels * hair_slots(filling.batch) * sizeof(Float4)));
         content += MOST_TEXELS * (size_t)hair_slots(filling.batch);
     }
 }

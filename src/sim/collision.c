@@ -237,9 +237,8 @@ bool collision_begin(Collision *collision, const SolverStep *step, int part, int
     CollideParams params = step_params(collision, step);
     bool any = place_shapes(collision, &step->head, &params, shapes) > 0 || collision->field;
     if (any) {
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, collision->shapes.buffer);
-        glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
-                        (GLsizeiptr)(collision->colliders->count * sizeof *shapes), shapes);
+        gpu_buffer_write(&collision->shapes, 0, shapes,
+                         (int64_t)(collision->colliders->count * sizeof *shapes));
         collision->step = params;
     }
     collision->step.part = 1 / (float)parts;

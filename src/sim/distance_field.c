@@ -220,14 +220,11 @@ static Result upload_triangles(Work *work, Error *error)
         for (int k = 0; k < 3; ++k)
             corners[i][k] = mesh->position[mesh->triangle[i / 3][i % 3]][k] - work->field->low[k];
     // Read only as a texture, so the limit of storage blocks does not apply.
-    GLsizeiptr size = (GLsizeiptr)((size_t)mesh->triangle_count * 3 * sizeof *corners);
+    int64_t size = (int64_t)((size_t)mesh->triangle_count * 3 * sizeof *corners);
     Result result =
         gpu_buffer_create_pieces(&work->triangles, &work->gpu->limits,
                                  "a distance field's triangles", size, GL_RGBA32F, error);
-    if (result == RESULT_OK) {
-        glBindBuffer(GL_COPY_WRITE_BUFFER, work->triangles.buffer);
-        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, size, corners);
-    }
+    if (result == RESULT_OK) gpu_buffer_write(&work->triangles, 0, corners, size);
     free(corners);
     return result;
 }

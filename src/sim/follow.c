@@ -300,9 +300,8 @@ void follow_move(Follow *follow, BoundBody *body, double time)
                          .guide = (const double(*)[3])guide,
                          .parts = parallel_threads()};
         parallel_run(moving.parts, move_part, &moving);
-        glBindBuffer(GL_COPY_WRITE_BUFFER, moving.batch->offsets.buffer);
-        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)moving.batch->offsets.size,
-                        moving.batch->offset);
+        gpu_buffer_write(&moving.batch->offsets, 0, moving.batch->offset,
+                         moving.batch->offsets.size);
     }
     free(guide);
 }

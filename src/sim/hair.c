@@ -214,7 +214,6 @@ Result hair_read_positions(const Hair *hair, float (*positions)[3], Error *error
 
 Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error *error)
 {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         const HairBatch *batch = &hair->batches[i];
         Float4 *written = malloc((size_t)batch->position.size + 1);
@@ -227,8 +226,7 @@ Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error
                 at[3] = 1;
             }
         }
-        glBindBuffer(GL_COPY_WRITE_BUFFER, batch->position.buffer);
-        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)batch->position.size, written);
+        gpu_buffer_write(&batch->position, 0, written, batch->position.size);
         free(written);
         positions += (size_t)batch->strand_count * batch->vertex_count;
     }

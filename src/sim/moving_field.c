@@ -427,9 +427,7 @@ static void fill_texels(MovingField *field)
             for (int k = 0; k < 3; ++k)
                 work->texel[i][1 + k] += closest.weight[c] * work->moved[corner[c]][k];
     }
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glBindBuffer(GL_COPY_WRITE_BUFFER, field->field.values.buffer);
-    glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)field->field.values.size, work->texel);
+    gpu_buffer_write(&field->field.values, 0, work->texel, field->field.values.size);
 }
 
 static void build(MovingField *field)

@@ -226,10 +226,7 @@ static bool read_buffer(Archive *archive, const GpuBuffer *buffer)
         values && float_planes_unpack(values, count, STRIDE, archive->at, (size_t)packed_size);
     archive->at += packed_size;
     archive->left -= (size_t)packed_size;
-    if (good) {
-        glBindBuffer(GL_COPY_WRITE_BUFFER, buffer->buffer);
-        glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)buffer->size, values);
-    }
+    if (good) gpu_buffer_write(buffer, 0, values, buffer->size);
     free(values);
     return good;
 }
@@ -255,7 +252,6 @@ static void begin_sections(Simulation *simulation)
     simulation->time = simulation->share > 0
                            ? schedule_frame_time(&simulation->scene->run, simulation->frame)
                            : now;
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 Result simulation_state_restore(Simulation *simulation, const Bytes *state, Error *error)
