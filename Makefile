@@ -104,6 +104,8 @@ run = $(if $(V),$(2),@$(if $(SILENT),,printf '  %-6s %s\n' $(1) $@; )$(2))
 all: $(OUT)/libtractrix.a $(PROGRAMS) $(SCRIPTS) library ## build the programs and the library (default)
 tests: $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)
 	@:
+faults: $(PROGRAMS) $(FAULTY) $(TORTURE) # what tests/faults/test_faults.sh runs
+	@:
 
 $(OUT)/%.o: src/%.c $(OUT)/flags | $(OUT)/version.h
 	$(call run,CC,$(CC) $(C_FLAGS) -MMD -MP -c -o $@ $<)
