@@ -165,6 +165,13 @@ says "survived  src/run/d.c:5: return a + 3;  ->  return a - 3;: 1 of 3 tests ru
 says "caught    src/run/d.c:9: return a - 4;  ->  return a + 4;: by test_exact"
 says "| \`src/run\` |"
 
+claim "a test that fails because lines are counted is used without its counts"
+# shellcheck disable=SC2016 # expanded by the test
+script run/test_uncounted.sh 'case ${CFLAGS-} in *coverage*) exit 1 ;; esac' 'grep -q "a + 3" src/run/d.c'
+run 0 --random 60 --seed 3 --only 'return a - 3' --limit 2 --fresh
+says "caught    src/run/d.c:5: return a + 3;  ->  return a - 3;: by test_uncounted.sh"
+rm "$tree/tests/run/test_uncounted.sh"
+
 claim "--others gives survivors to quick tests of other rooms, --sanitize to the sanitizers"
 script base/test_text.sh 'grep -q "a + 3" src/run/d.c'
 run 0 --random 60 --seed 3 --only 'return a - 3' --limit 2 --fresh --others 30
