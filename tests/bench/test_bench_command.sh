@@ -92,6 +92,7 @@ fi
 claim "scenes have rows of the same form"
 run 0 scenes --set 1k16 --steps 1 --warm-up 0 --algo dftl --csv "$work/scenes.csv"
 same "$(field "$work/scenes.csv" guides | tail -1)" 2000 "guides of two sections"
+same "$(field "$work/scenes.csv" ms_min | awk '!($1 > 0)' | wc -l)" 0 "scenes without a time"
 
 claim "stress: solvers that keep their bounds have a row each, and it ends with 0"
 run 0 stress --algo hybrid --cases 48 --steps 50 --csv "$work/kept.csv"

@@ -107,6 +107,45 @@ static void an_image_that_comes_late_has_all_of_its_hair(void **state)
     }
 }
 
+// The image is drawn again after another renderer has drawn: with its own shadows.
+static void an_image_that_is_drawn_again_has_its_own_shadows(void **state)
+{
+    (void)state;
+    const RendererOptions large = {.width = 256,
+                                   .height = 256,
+                                   .background = {0, 0, 0, 1},
+                                   .shadow = {.kind = SHADOW_DOM, .side = 256, .spacing = 2}};
+    RendererOptions other_options = BLACK;
+    Renderer *renderer = &studio.renderer, other;
+    Image image = late_image(&large), other_image = late_image(&other_options);
+    size_t size;
+    View view;
+    int place;
+    other_options.raster = RASTER_QUADS;
+    other_options.shadow = (ShadowOptions){.kind = SHADOW_DOM, .side = 64, .spacing = 100};
+    use(&large);
+    add_tangle(3000, 6, 0.4f, NULL);
+    studio.light.shadow = true;
+    uint8_t *expected = draw_copy(&size);
+    use(&large); // makes the pool small again
+    studio_view(&view, 256, 256);
+    RenderFrame frame = {
+        .view = &view, .lights = &studio.light, .light_count = 1, .head_rotation = {0, 0, 0, 1}};
+    NEEDED(renderer_create(&other, &studio.gpu, &studio.timer, &other_options, error));
+    place = renderer_place(renderer);
+    NEEDED(renderer_begin(renderer, &frame, studio.items, studio.count, &image, error));
+    NEEDED(renderer_draw(&other, &frame, studio.items, studio.count, &other_image, error));
+    NEEDED(renderer_settle(renderer, error));
+    assert_true(renderer->counts.redraws > 0);
+    NEEDED(renderer_take(renderer, place, &image, error));
+    assert_memory_equal(image.pixels, expected, size);
+    assert_memory_not_equal(image.pixels, other_image.pixels, size);
+    renderer_destroy(&other);
+    image_destroy(&image);
+    image_destroy(&other_image);
+    free(expected);
+}
+
 // All its pixels lie in one 8x8 block and therefore in one shard.
 static void a_small_picture_uses_the_whole_pool(void **state)
 {
@@ -185,6 +224,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CLAIM(a_pool_that_is_too_small_grows),
         CLAIM(an_image_that_comes_late_has_all_of_its_hair),
+        CLAIM(an_image_that_is_drawn_again_has_its_own_shadows),
         CLAIM(bands_give_the_same_picture),
         CLAIM(bands_are_no_more_than_the_pool_asks_for),
         CLAIM(a_small_picture_uses_the_whole_pool),

@@ -24,6 +24,7 @@ refused 2 "--knid: no such option: did you mean '--kind'?" --knid curls
 refused 2 "--count: got '0', expected a whole number from 1 to 10000000" --count 0
 refused 2 "--curl-radius: has no effect: --kind is fur" --kind fur --curl-radius 0.01
 refused 2 "65537 strands of 65535 vertices: expected fewer than 2^32 - 1 vertices in all" --count 65537 --vertices 65535
+refused 2 "--set 1k16 and --kind: expected only one of them" --set 1k16 --kind random
 refused 2 "--set 1k16 and --count: expected only one of them" --set 1k16 --count 5
 refused 2 "x: got a file, expected only options" x
 run 2; says "no output: expected -o FILE"

@@ -225,10 +225,12 @@ static void refuses_wrong_poses(void **state)
     pose.rotation[3] = 2;
     library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
                     "head.rotation");
-    pose = pose_after(1);
-    pose.translation[1] = NAN;
-    library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
-                    "head.translation");
+    for (int k = 0; k < 3; ++k) {
+        pose = pose_after(1);
+        pose.translation[k] = k == 1 ? NAN : 1e9;
+        library_refused(tractrix_simulation_advance(simulation, &pose, &error), TRACTRIX_USAGE,
+                        "head.translation");
+    }
     library_refused(tractrix_simulation_advance_mesh(simulation, library_sheet[0], 4, &error),
                     TRACTRIX_USAGE, "deforms");
     library_refused(tractrix_simulation_set(simulation, "drag", "1", &error), TRACTRIX_USAGE,
@@ -248,6 +250,20 @@ static TractrixSimulation *simulate_sheet(bool deforms)
     WELL(tractrix_simulation_create(&simulation, device, scene, &error));
     tractrix_scene_destroy(scene);
     return simulation;
+}
+
+static void moves_a_mesh_only_by_whole_steps(void **state)
+{
+    static const char *const odd[] = {"sim_rate", "100", NULL};
+    TractrixScene *scene = library_scene(odd);
+    TractrixSimulation *simulation;
+    (void)state;
+    library_set_sheet(scene, true);
+    WELL(tractrix_simulation_create(&simulation, device, scene, &error));
+    library_refused(tractrix_simulation_advance_mesh(simulation, library_sheet[0], 4, &error),
+                    TRACTRIX_USAGE, "whole number");
+    tractrix_simulation_destroy(simulation);
+    tractrix_scene_destroy(scene);
 }
 
 // A mesh whose vertices move rigidly acts like a moving head; if it stretches to twice its width,
@@ -834,6 +850,7 @@ int main(void)
         cmocka_unit_test(roots_follow_any_rotation),
         cmocka_unit_test(moves_as_the_scene_would),
         cmocka_unit_test(refuses_wrong_poses),
+        cmocka_unit_test(moves_a_mesh_only_by_whole_steps),
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
         cmocka_unit_test(draws_by_views_and_formats),

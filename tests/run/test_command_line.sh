@@ -196,6 +196,12 @@ if has_driver llvmpipe; then
     GALLIUM_DRIVER=nonsense; export GALLIUM_DRIVER
     run 4 $hair --frames 1 -q -o "$work/x/"; says "expected llvmpipe or softpipe"
     unset GALLIUM_DRIVER
+    for version in 4.2 4.3; do
+        # shellcheck disable=SC2086
+        MESA_GL_VERSION_OVERRIDE=$version "$program" $hair $plain --frames 1 --size 32x24 --software -o "$work/$version/" >"$work/out" 2>"$work/err"
+        status=$?
+        if [ "$version $status" = "4.2 4" ] || [ "$version $status" = "4.3 0" ]; then good; else bad "OpenGL $version: status $status"; fi
+    done
 else
     skip "no CPU driver"
 fi

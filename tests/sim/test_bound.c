@@ -66,12 +66,16 @@ static double farthest_apart(BodyFixture *bound, SimulationFixture *other)
     return most;
 }
 
-static void check_rigid(const char *algo, const char *variant)
+// `mixed`: strands of several sizes, which solvers keep in memory.
+static void check_rigid_of(const char *algo, const char *variant, bool mixed)
 {
-    BodyFixture bound;
+    BodyFixture bound = {0};
     SimulationFixture tracked;
-    body_fixture_create(&bound, algo, variant, rigid, 60, 0, 40);
+    simulation_fixture_create(&bound.base, algo, variant);
     create_tracked(&tracked, algo, variant, RIGID);
+    if (mixed) simulation_fixture_mix(&bound.base), simulation_fixture_mix(&tracked);
+    body_fixture_make_sheet(&bound.mesh);
+    body_fixture_bind(&bound, rigid, 60, 0, 40);
     simulation_fixture_start(&bound.base);
     simulation_fixture_start(&tracked);
     for (int frame = 0; frame <= 24; frame += 8) {
@@ -86,10 +90,22 @@ static void check_rigid(const char *algo, const char *variant)
     simulation_fixture_destroy(&tracked);
 }
 
+static void check_rigid(const char *algo, const char *variant)
+{
+    check_rigid_of(algo, variant, false);
+}
+
 static void rigid_samples_are_a_head_track(void **state)
 {
     (void)state;
     simulation_fixture_each(check_rigid);
+}
+
+static void rigid_samples_are_a_head_track_also_for_strands_in_memory(void **state)
+{
+    (void)state;
+    static const char *const algos[] = {"split", "emulation", "hybrid", "chain", "rope"};
+    for (size_t i = 0; i < sizeof algos / sizeof *algos; ++i) check_rigid_of(algos[i], "", true);
 }
 
 // A constant rotation about the pivot.
@@ -665,6 +681,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rigid_samples_are_a_head_track),
+        cmocka_unit_test(rigid_samples_are_a_head_track_also_for_strands_in_memory),
         cmocka_unit_test(an_even_turn_is_exact_between_samples),
         cmocka_unit_test(a_constant_acceleration_is_exact_between_samples),
         cmocka_unit_test(rigid_motion_between_samples_is_that_of_the_head),

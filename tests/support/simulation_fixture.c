@@ -10,14 +10,14 @@
 
 #include <cmocka.h>
 
-enum { STRANDS = 20 };
-
-static void make_strands(Strands *strands)
+// Makes strands with the given numbers of vertices in turn, 10 on average. `count` is a multiple of
+// `kinds`.
+static void make_strands(Strands *strands, uint32_t count, const uint32_t *sizes, uint32_t kinds)
 {
     uint32_t at = 0;
-    assert_int_equal(strands_create(strands, STRANDS, STRANDS * 10, NULL), RESULT_OK);
-    for (uint32_t s = 0; s < STRANDS; ++s) {
-        uint32_t n = s % 2 ? 8 : 12;
+    assert_int_equal(strands_create(strands, count, count * 10, NULL), RESULT_OK);
+    for (uint32_t s = 0; s < count; ++s) {
+        uint32_t n = sizes[s % kinds];
         strands->first[s] = at;
         for (uint32_t j = 0; j < n; ++j, ++at) {
             float turn = 0.7f * (float)j + (float)s;
@@ -26,7 +26,7 @@ static void make_strands(Strands *strands)
             strands->position[at][2] = 0.01f * (float)j + 0.01f * sinf(turn);
         }
     }
-    strands->first[STRANDS] = at;
+    strands->first[count] = at;
 }
 
 void simulation_fixture_create(SimulationFixture *fixture, const char *algo, const char *variant)
@@ -47,8 +47,14 @@ void simulation_fixture_create(SimulationFixture *fixture, const char *algo, con
         keyframes_append(&scene->bodies[0].head.translation.keys, 0.3 * i, poses[i], 3, NULL);
         keyframes_append(&scene->bodies[0].head.rotation.keys, 0.3 * i, turns[i], 3, NULL);
     }
-    make_strands(&fixture->strands);
+    make_strands(&fixture->strands, 20, (const uint32_t[]){12, 8}, 2);
     gpu_timer_create(&fixture->timer, false, true);
+}
+
+void simulation_fixture_mix(SimulationFixture *fixture)
+{
+    strands_destroy(&fixture->strands);
+    make_strands(&fixture->strands, 18, (const uint32_t[]){12, 8, 10}, 3);
 }
 
 void simulation_fixture_start(SimulationFixture *fixture)

@@ -15,6 +15,10 @@ typedef struct SimulationFixture {
 // with `variant`. The scene's run parameters may be changed before simulation_fixture_start.
 void simulation_fixture_create(SimulationFixture *fixture, const char *algo, const char *variant);
 
+// Replaces the strands by 18 of 8, 10 and 12 vertices, before the simulation is made. With as many
+// different counts, solvers keep strands in memory and not in registers (sim/step.c).
+void simulation_fixture_mix(SimulationFixture *fixture);
+
 // Makes the simulation and lets the hair settle: frame 0. The test fails on any error.
 void simulation_fixture_start(SimulationFixture *fixture);
 void simulation_fixture_destroy(SimulationFixture *fixture);
