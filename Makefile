@@ -114,12 +114,13 @@ $(OUT)/bench/cpu_split.o: C_FLAGS += -O3 -fno-math-errno -fno-trapping-math -ffi
 endif
 KEEP_LOOPS := $(shell $(CC) -Werror --param max-completely-peel-times=15 -x c -c /dev/null -o /dev/null 2>/dev/null && echo --param max-completely-peel-times=15)
 LANE_PIXELS := $(addprefix $(OUT)/lanes/,composite.o pixels.o shade.o project.o)
+LANE_FLAGS := $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math
 # Lanes: without these flags, selects and square roots are not vectorised, because they might trap or set errno. Loops
 # of 16 lanes must not be unrolled before they are vectorised (gcc unrolls loops of up to 16 turns). The results have
 # the same bits.
-$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS)
-$(OUT)/mesh/head.o: C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math $(KEEP_LOOPS:15=6) # loops of 8 points
-$(LANE_PIXELS): C_FLAGS += $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trapping-math -ffinite-math-only -fno-signed-zeros
+$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS)
+$(OUT)/mesh/head.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS:15=6) # loops of 8 points
+$(LANE_PIXELS): C_FLAGS += $(LANE_FLAGS) -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
 $(OUT)/glsl_sources.c: scripts/embed-text $(SHADERS) $(OUT)/files
 	$(call run,EMBED,$(EMBED_GLSL) GLSL_SOURCES glsl/ $(SHADERS) >$@.tmp && mv $@.tmp $@)
