@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/npy_array.h"
+#include "base/half.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -192,15 +192,6 @@ bool npy_array_is_number(const NpyArray *array)
 
 // --- Elements.
 
-static double from_half(uint32_t bits)
-{
-    uint32_t exponent = bits >> 10 & 31, mantissa = bits & 1023;
-    double value = exponent == 31  ? (mantissa ? (double)NAN : (double)INFINITY)
-                   : exponent == 0 ? ldexp(mantissa, -24)
-                                   : ldexp(mantissa + 1024, (int)exponent - 25);
-    return bits >> 15 ? -value : value;
-}
-
 double npy_array_number(const NpyArray *array, uint64_t i)
 {
     const uint8_t *at = array->data + i * array->item;
@@ -213,7 +204,7 @@ double npy_array_number(const NpyArray *array, uint64_t i)
     uint32_t low = (uint32_t)bits;
     memcpy(&single, &low, sizeof single);
     memcpy(&wide, &bits, sizeof wide);
-    if (array->kind == 'f') return item == 2 ? from_half(low) : item == 4 ? (double)single : wide;
+    if (array->kind == 'f') return item == 2 ? half_number(low) : item == 4 ? (double)single : wide;
     if (array->kind != 'i') return (double)bits;
     uint64_t sign = 1ull << (8 * item - 1);
     return (double)(int64_t)((bits ^ sign) - sign);

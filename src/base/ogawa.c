@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/ogawa.h"
+#include "base/half.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -236,14 +237,6 @@ void ogawa_free(OgawaProperties *properties)
 }
 
 // --- Samples.
-
-static double half_number(uint32_t bits)
-{
-    int power = (int)(bits >> 10 & 31);
-    double part = bits & 0x3ff, sign = bits & 0x8000 ? -1 : 1;
-    if (power == 31) return part > 0 ? (double)NAN : sign * (double)INFINITY;
-    return sign * (power ? ldexp(1024 + part, power - 25) : ldexp(part, -24));
-}
 
 typedef struct Pod {
     char kind; // b, u, i, h (half), f; 0 if not a number
