@@ -136,6 +136,9 @@ counts "$work/out" "::error" 2; if [ "$(wc -l <"$work/out")" = 2 ]; then good; e
 in_file "$work/summary.md" "### Images: 2 of 3 failed"; in_file "$work/summary.md" "Limits: pixel tolerance 0, failing pixels 1 %."
 in_file "$work/summary.md" '| `f_2.pfm` | different |'; in_file "$work/summary.md" ' | 600 (50 %) | '; in_file "$work/summary.md" '| `o,d:d 100%??x\|'\''.pfm` | different |'
 rm "$work/a/$odd" "$work/b/$odd"
+cp "$work/b/f_2.pfm" "$work/b/unknown.pfm" # its reference is not there, but has a place in the checkout
+run 1 -q "$work/a" "$work/b" --github; says '::error file=a/unknown.pfm,title=unknown.pfm%3A new::'
+rm "$work/b/unknown.pfm"
 GITHUB_STEP_SUMMARY=$work/summary.md/none
 run 1 -q "$work/a" "$work/b" --github; one_line; says "summary.md/none: cannot write"
 unset GITHUB_STEP_SUMMARY
