@@ -446,7 +446,7 @@ help: ## print this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests demo test bench bench-image stress mutate torture growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress mutate torture growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(wildcard $(OUT)/*.d $(OUT)/*/*.d $(OUT)/*/*/*.d)

@@ -118,19 +118,12 @@ static Result make_scratch(HairShadow *hair, ShadowCasters casters, Error *error
     return RESULT_OK;
 }
 
-static void fill(const GpuBuffer *buffer, GLuint value)
-{
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->buffer);
-    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, (GLsizeiptr)buffer->size,
-                         GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
-}
-
 Result hair_shadow_begin(HairShadow *hair, int maps, ShadowCasters casters, Error *error)
 {
     TRY(make_maps(hair, maps, error));
     TRY(make_scratch(hair, casters, error));
-    fill(&hair->firsts, SHADOW_DEPTHS);
-    if (hair->deep) fill(&hair->sums, 0);
+    gpu_buffer_clear(&hair->firsts, SHADOW_DEPTHS);
+    if (hair->deep) gpu_buffer_clear(&hair->sums, 0);
     return RESULT_OK;
 }
 

@@ -4,7 +4,6 @@
 #include "support/scene_reader.h"
 #include "support/temporary.h"
 
-#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -53,41 +52,6 @@ static void a_scene_file_says_all_that_flags_can_and_more(void **state)
     assert_true(spot->inner_deg == 20 && spot->outer_deg == 30);
     assert_true(spot->radius == 0.25f && scene.lights[0].radius == 0);
     assert_true(scene.lights[0].shadow && !scene.lights[1].shadow && spot->shadow);
-    scene_destroy(&scene);
-}
-
-static int allocations_left; // before one that fails
-
-static void *allocate_or_fail(size_t size)
-{
-    return allocations_left-- == 0 ? NULL : malloc(size);
-}
-
-// In turn, one allocation fails each time: the result is then nothing, never a scene without a
-// part.
-static void a_scene_is_written_whole_or_not_at_all(void **state)
-{
-    (void)state;
-    Scene scene;
-    json_malloc_t allocates;
-    json_free_t releases;
-    assert_read(&scene, "tests/data/scene_full.json");
-    json_get_alloc_funcs(&allocates, &releases);
-    json_set_alloc_funcs(allocate_or_fail, free);
-    allocations_left = INT_MAX;
-    json_t *whole = scene_to_json(&scene);
-    int all = INT_MAX - allocations_left, failed = 0;
-    assert_non_null(whole);
-    for (int i = 0; i < all; ++i) {
-        allocations_left = i;
-        json_t *json = scene_to_json(&scene);
-        failed += !json;
-        if (json && !json_equal(json, whole)) fail_msg("allocation %d fails, a part is lost", i);
-        json_decref(json);
-    }
-    assert_true(failed > all / 2);
-    json_decref(whole);
-    json_set_alloc_funcs(allocates, releases);
     scene_destroy(&scene);
 }
 
@@ -617,7 +581,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scene_file_says_all_that_flags_can_and_more),
-        cmocka_unit_test(a_scene_is_written_whole_or_not_at_all),
         cmocka_unit_test(a_section_overrides_the_top_level_and_flags_override_both),
         cmocka_unit_test(paths_in_a_scene_file_are_relative_to_its_folder),
         TEST(a_preset_gives_way_to_what_is_said),
