@@ -12,6 +12,11 @@
 // files that are 2 to 5 % larger (docs/notes/png.md).
 enum { DEFLATE_LEVEL = 1, INDICES_DEFLATE_LEVEL = 9 };
 enum { PIECE_BYTES = 1 << 15 }; // rows are filtered and compressed while they are in the cache
+// ISA-L (up to 2.32) hashes the third byte of a stream together with the stream's address
+// (.write_first_byte in its igzip_icf_body_h1_gr_bt.asm), so that one file in thousands had other
+// matches. The first 4 to 16 bytes, flushed on their own, take a path without this error and make
+// the file 6 to 8 bytes longer (docs/notes/png.md).
+enum { START_BYTES = 8 };
 
 // to = a - b, byte by byte. Written with explicit vectors, since compilers do not vectorise the
 // plain loop.
@@ -59,13 +64,12 @@ typedef struct Packer {
     uint8_t rows[];
 } Packer;
 
-// Compresses `count` bytes of the rows. False when memory is short or ISA-L refuses.
-static bool add_rows(Packer *packer, size_t count, bool last)
+// Compresses bytes of the rows. False when memory is short or ISA-L refuses.
+static bool add_bytes(Packer *packer, uint8_t *bytes, size_t count)
 {
     struct isal_zstream *stream = &packer->stream;
-    stream->next_in = packer->rows;
+    stream->next_in = bytes;
     stream->avail_in = (uint32_t)count;
-    stream->end_of_stream = last;
     do {
         size_t room = packer->room ? 2 * packer->room : PIECE_BYTES;
         if (!stream->avail_out) {
@@ -82,6 +86,20 @@ static bool add_rows(Packer *packer, size_t count, bool last)
     return true;
 }
 
+// Compresses the next `count` of the `left` bytes, which are in `rows`.
+static bool add_rows(Packer *packer, size_t count, size_t left)
+{
+    struct isal_zstream *stream = &packer->stream;
+    size_t start = stream->total_in == 0 && left > START_BYTES ? START_BYTES : 0;
+    if (start) {
+        stream->flush = SYNC_FLUSH;
+        if (!add_bytes(packer, packer->rows, start)) return false;
+        stream->flush = NO_FLUSH;
+    }
+    stream->end_of_stream = count == left;
+    return add_bytes(packer, packer->rows + start, count - start);
+}
+
 static bool pack(Packer *packer, const Image *image, size_t row, int rows)
 {
     isal_deflate_init(&packer->stream);
@@ -96,7 +114,8 @@ static bool pack(Packer *packer, const Image *image, size_t row, int rows)
         count = image->height - y < rows ? image->height - y : rows;
         for (int i = 0; i < count; ++i)
             filter_row(image, y + i, row, packer->rows + (size_t)i * (row + 1));
-        if (!add_rows(packer, (size_t)count * (row + 1), y + count == image->height)) return false;
+        if (!add_rows(packer, (size_t)count * (row + 1), (size_t)(image->height - y) * (row + 1)))
+            return false;
     }
     packer->packed.data[packer->packed.size] = 0;
     return true;
