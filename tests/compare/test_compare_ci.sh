@@ -148,6 +148,14 @@ for i in 1 2 3 4 5 6 7 8 9 10; do cp "$work/a/f_2.pfm" "$work/c/$i.pfm"; cp "$wo
 run 1 -q "$work/c" "$work/d" --github; counts "$work/out" "::error file=" 10
 cp "$work/a/f_2.pfm" "$work/c/11.pfm"
 run 1 -q "$work/c" "$work/d" --github; counts "$work/out" "::error file=" 9; says "::error title=tractrix-compare::2 more images failed: see the summary"
+mkdir "$work/many" "$work/others"
+for i in $(seq 1003); do
+    printf 'Pf\n1 1\n-1.0\n\0\0\0\0' >"$work/many/$i.pfm"
+    printf 'Pf\n1 1\n-1.0\n\0\0\0\077' >"$work/others/$i.pfm"
+done
+rm "$work/summary.md"
+GITHUB_STEP_SUMMARY=$work/summary.md run 1 -q "$work/many" "$work/others" --github
+counts "$work/summary.md" '.pfm` | different |' 1000; holds grep -qx "3 more images are not listed." "$work/summary.md"
 unset GITHUB_WORKSPACE
 
 claim "--unrendered puts images that could not be made into the reports"

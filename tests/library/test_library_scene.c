@@ -38,6 +38,8 @@ static void reads_and_writes_parameters(void **state)
                     TRACTRIX_USAGE, "output");
     library_refused(tractrix_scene_set(scene, 0, "algo", "split", &library_error), TRACTRIX_USAGE,
                     "section");
+    library_refused(tractrix_scene_set(scene, 1, "algo", "split", &library_error), TRACTRIX_USAGE,
+                    "section: got 1, expected -1 to -1");
     // Refused values change nothing, and a NULL error is allowed.
     assert_int_equal(tractrix_scene_set(scene, -1, "wind", "fast", NULL), TRACTRIX_USAGE);
     tractrix_scene_get(scene, -1, "wind", text, sizeof text);

@@ -351,6 +351,7 @@ run 0 --help all; says "--lod-width"; says "Exit status"
 run 0 --version; says "tractrix-render"
 run 0 --algo list; says "thesis"
 run 0 --list-devices; says "OpenGL"
+if grep 'UUID' "$work/out" | grep -qvE 'UUID [0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}(,|$)'; then bad "a UUID is not whole"; else good; fi
 
 claim "video through ffmpeg"
 if command -v ffmpeg >/dev/null; then

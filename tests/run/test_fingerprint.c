@@ -328,6 +328,26 @@ static void what_a_frame_shows_counts(void **state)
     destroy(&two);
 }
 
+// The grey of a depth image depends on the depths of the whole sequence.
+static void the_depths_of_all_frames_count_in_a_depth_image(void **state)
+{
+    (void)state;
+    for (int aov = AOV_NONE; aov <= AOV_DEPTH; aov += AOV_DEPTH - AOV_NONE) {
+        World near, far;
+        create(&near, "split");
+        create(&far, "split");
+        near.scene.run.aov = far.scene.run.aov = aov;
+        near.frame = far.frame = 0;
+        turn(&near);
+        turn(&far);
+        far.scene.run.frames = 1; // the camera does not come to the other sides
+        bool same = strcmp(numbers_of(&near).image, numbers_of(&far).image) == 0;
+        assert_int_equal(same, aov != AOV_DEPTH);
+        destroy(&near);
+        destroy(&far);
+    }
+}
+
 static void the_content_of_a_map_counts(void **state)
 {
     World world;
@@ -390,6 +410,7 @@ int main(void)
         cmocka_unit_test(the_content_of_an_environment_counts),
         cmocka_unit_test(every_input_counts),
         cmocka_unit_test(what_a_frame_shows_counts),
+        cmocka_unit_test(the_depths_of_all_frames_count_in_a_depth_image),
         cmocka_unit_test_setup_teardown(the_content_of_a_map_counts, temporary_create,
                                         temporary_destroy),
     };
