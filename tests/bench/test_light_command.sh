@@ -15,6 +15,7 @@ same "$(field "$work/a.csv" verdict | grep -c holds)" 6 "rows that hold"
 same "$(field "$work/a.csv" way | sort | uniq -c | tr -s ' \n' ' ')" " 4 grid 4 none " "rows, and a mean for each way"
 same "$(grep -c '"mean_r"' "$work/a.json")" 8 "rows of JSON"
 same "$(field "$work/a.csv" still_ms_min | grep -c .)" 0 "times that --frames 0 leaves out"
+same "$(field "$work/a.csv" width | sort | uniq -c | tr -s ' ')" " 8 320" "widths, also of the means"
 for way in none grid; do
     for name in coverage mean_r rel_b; do
         same "$(awk -F, -v way=$way -v name=$name '
