@@ -76,6 +76,29 @@ static void exact_light_of_a_lamp_spreads(void **state)
     shadow_stage_close(&stage);
 }
 
+// The mesh covers all that is on one side of the axis of every fibre.
+static void light_is_the_mean_across_the_fibre(void **state)
+{
+    enum { LAYERS = 2, VERTICES = 5 };
+    float left[LAYERS * VERTICES];
+    (void)state;
+    for (int side = 0; side <= 2; side += 2) {
+        ShadowStage stage;
+        Mesh mesh = shadow_stage_square(0.05f, 1);
+        for (int v = 0; v < 4; ++v) mesh.position[v][side] += 1;
+        shadow_stage_open(&stage, shadow_stage_layers(LAYERS), 0.01f, 0.3f, &mesh, &LIGHT_ABOVE);
+        shadow_reference_fill(&stage.reference, &stage.item, left);
+        // Side 0: from the middle of the fibre on, which is vertex 2.
+        for (int v = 0; v < LAYERS * VERTICES; ++v) {
+            int j = v % VERTICES;
+            double lit = side || j == 2 ? 0.5 : j < 2;
+            shadow_assert_near(left[v], lit * pow(0.7, v / VERTICES), 1e-6);
+        }
+        shadow_stage_close(&stage);
+        mesh_destroy(&mesh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -83,6 +106,7 @@ int main(void)
         cmocka_unit_test(exact_light_meets_a_joint_once),
         cmocka_unit_test(exact_light_ends_at_the_mesh),
         cmocka_unit_test(exact_light_of_a_lamp_spreads),
+        cmocka_unit_test(light_is_the_mean_across_the_fibre),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
