@@ -212,6 +212,8 @@ if has_driver osmesa; then
     # shellcheck disable=SC2086
     run 0 $hair $plain --backend osmesa --frames 1 --size 32x24 -o "$work/osmesa/"
     says "OSMesa"; is_file "$work/osmesa/frame_0000.png"
+elif /sbin/ldconfig -p | grep -q "libOSMesa.so.8"; then
+    bad "OSMesa is installed, but not found"
 else
     skip "no OSMesa"
 fi

@@ -216,6 +216,28 @@ static void hair_away_from_its_mesh_gets_a_message(void **state)
     }
 }
 
+// The roots are 0.1 to 0.9 m in front of the triangle.
+static void the_message_about_hair_has_the_median_distance(void **state)
+{
+    enum { COUNT = 9 };
+    char line[1200], hair[100 * COUNT] = "numStrands 9\nis sorted 1\n", *text;
+    Scene scene;
+    Assets assets;
+    write_files(state);
+    for (int i = 1; i <= COUNT; ++i)
+        snprintf(hair + strlen(hair), 100,
+                 "strand %d numVerts 2 texcoord 0 0\n1.1 2.1 3.%d\n1.1 2.1 %d\n", i - 1, i, i + 4);
+    temporary_write(state, "spread.tfx", hair, 0644);
+    snprintf(line, sizeof line, "%s --unit m --mesh %s -o x.png",
+             temporary_path(state, "spread.tfx"), temporary_path(state, "m.obj"));
+    assert_read(&scene, line);
+    load(&assets, &scene, &text);
+    if (!strstr(text, "half of the roots are more than 0.5 m from this mesh")) fail_msg("%s", text);
+    free(text);
+    assets_destroy(&assets);
+    scene_destroy(&scene);
+}
+
 static void errors_name_the_file(void **state)
 {
     static const char *const CASES[][2] = {
@@ -285,6 +307,7 @@ int main(void)
         TEST(hair_and_meshes_may_come_from_memory),
         TEST(messages_name_the_file),
         TEST(hair_away_from_its_mesh_gets_a_message),
+        TEST(the_message_about_hair_has_the_median_distance),
         TEST(errors_name_the_file),
         TEST(a_check_reports_every_file),
     };

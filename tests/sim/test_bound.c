@@ -397,7 +397,7 @@ static void only_large_jumps_are_cuts(void **state)
         double rate, move, turn;
         bool cuts;
     } cases[] = {{24, 0.49, 0, false}, {24, 0.51, 0, true}, {60, 0.49, 0, false},
-                 {12, 0.98, 0, false}, {12, 1.02, 0, true},  {24, 0, 1.45, false},
+                 {12, 0.98, 0, false}, {12, 1.02, 0, true}, {24, 0, 1.45, false},
                  {24, 0, 1.7, true},   {12, 0, 2.9, false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         BodyFixture fixture;

@@ -103,6 +103,7 @@ static void frames_are_samples_at_their_times(void **state)
 {
     Strands strands = make_rich(), back;
     StrandsFrames frames;
+    StrandsReport report;
     FramesFile file;
     const CurvesOptions options = {
         .metres_per_unit = 1, .animated = true, .fps = 24, .first = 10, .last = 14};
@@ -116,8 +117,9 @@ static void frames_are_samples_at_their_times(void **state)
     }
     assert_false(temporary_has(state, "x.abc")); // not before it is complete
     assert_int_equal(frames_file_finish(&file, NULL), RESULT_OK);
-    back = read_data(path, &frames, NULL);
+    back = read_data(path, &frames, &report);
     assert_int_equal(frames.count, 3);
+    assert_string_equal(report.note, "");
     assert_float_equal(frames.fps, 12, 1e-12); // every second frame
     assert_int_equal(frames.first, 5);
     for (uint32_t f = 0; f < 3; ++f)
