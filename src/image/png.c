@@ -34,6 +34,7 @@ typedef struct Codec {
     png_text *chunks; // texts in libpng's form
     Image image;      // being read
     bool deep;        // keep 16 bits per sample
+    bool memory_is_short;
 } Codec;
 
 static void fail(png_structp png, png_const_charp message)
@@ -284,17 +285,25 @@ static Result make_image(Codec *codec, const char *path, Error *error)
 }
 
 // libpng trusts the length that a chunk declares. This limit makes it refuse lengths out of
-// proportion to the file's size.
+// proportion to the file's size. If memory is short, libpng leaves out a text and goes on.
 static png_voidp give_memory(png_structp png, size_t size)
 {
-    const Codec *codec = png_get_mem_ptr(png);
-    return size <= READ_MAX_FACTOR * codec->size + READ_SURE_BYTES ? malloc(size) : NULL;
+    Codec *codec = png_get_mem_ptr(png);
+    if (size > READ_MAX_FACTOR * codec->size + READ_SURE_BYTES) return NULL;
+    void *block = malloc(size);
+    if (!block) codec->memory_is_short = true;
+    return block;
 }
 
 static void take_memory(png_structp png, png_voidp block)
 {
     (void)png;
     free(block);
+}
+
+static Result fail_memory(const char *path, Error *error)
+{
+    return error_set(error, RESULT_FAILED, "%s: no memory to read it", path);
 }
 
 static Result open_reader(Codec *codec, const Bytes *file, const char *path, Error *error)
@@ -306,14 +315,15 @@ static Result open_reader(Codec *codec, const Bytes *file, const char *path, Err
     codec->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, codec, fail, warn, codec,
                                           give_memory, take_memory);
     codec->info = codec->png ? png_create_info_struct(codec->png) : NULL;
-    if (codec->info) return RESULT_OK;
-    return error_set(error, RESULT_FAILED, "%s: no memory to read it", path);
+    return codec->info ? RESULT_OK : fail_memory(path, error);
 }
 
 // Runs the step; an error names the file.
 static Result try_step(Codec *codec, void (*step)(Codec *codec), const char *path, Error *error)
 {
-    if (go(codec, step)) return RESULT_OK;
+    bool good = go(codec, step);
+    if (codec->memory_is_short) return fail_memory(path, error);
+    if (good) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: not a readable PNG file: %s", path,
                      codec->reason);
 }
