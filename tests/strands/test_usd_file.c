@@ -497,6 +497,36 @@ static void all_times_of_points_and_transforms_are_frames(void **state)
     strands_destroy(&strands);
 }
 
+// 120 degrees about (1, 1, 1) from time 1 to 3; at time 2 there is a sample of the translation.
+static void orientations_take_the_shortest_way(void **state)
+{
+    static const char *const ENDS[] = {"0.5, 0.5, 0.5, 0.5", "-0.5, -0.5, -0.5, -0.5"};
+    static const float TIPS[3][3] = {{0, 1, 0}, {-1 / 3.0f, 2 / 3.0f, 2 / 3.0f}, {0, 0, 1}};
+    for (int i = 0; i < 2; ++i) {
+        char text[1000], note[400];
+        Strands strands;
+        snprintf(
+            text, sizeof text,
+            "#usda 1.0\n(\nmetersPerUnit = 1\ntimeCodesPerSecond = 24\n)\n"
+            "def BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"
+            "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n"
+            "double3 xformOp:translate.timeSamples = {1: (0, 0, 0), 2: (5, 0, 0), 3: (0, 0, 0)}\n"
+            "quatf xformOp:orient.timeSamples = {1: (1, 0, 0, 0), 3: (%s)}\n" ORDER(
+                "\"xformOp:translate\", \"xformOp:orient\"") "}\n",
+            ENDS[i]);
+        StrandsFrames frames = read_frames(state, text, &strands, note);
+        assert_int_equal(frames.count, 3);
+        for (int f = 0; f < 3; ++f)
+            for (int k = 0; k < 3; ++k) {
+                float moved = f == 1 && k == 0 ? 5 : 0;
+                assert_float_equal(frames.position[2 * f][k], moved, 1e-6);
+                assert_float_equal(frames.position[2 * f + 1][k], moved + TIPS[f][k], 1e-6);
+            }
+        strands_frames_destroy(&frames);
+        strands_destroy(&strands);
+    }
+}
+
 static void what_is_not_drawn_is_left_out_and_counted(void **state)
 {
     (void)state;
@@ -570,6 +600,7 @@ int main(void)
         TEST(attributes_of_cubic_curves_go_to_their_points),
         TEST(transforms_act_in_their_order),
         TEST(all_times_of_points_and_transforms_are_frames),
+        TEST(orientations_take_the_shortest_way),
         TEST(what_is_not_drawn_is_left_out_and_counted),
         TEST(every_truncation_and_damage_is_survived),
         TEST(a_file_that_is_not_finished_is_not_there),
