@@ -255,6 +255,25 @@ static void every_point_has_its_distance(void **state)
     mesh_destroy(&box);
 }
 
+// Two triangles at the ends of a long, thin grid: flooding must come to its middle along every
+// axis.
+static void distances_reach_across_every_axis(void **state)
+{
+    (void)state;
+    for (int axis = 0; axis < 3; ++axis) {
+        Mesh mesh;
+        assert_int_equal(mesh_create(&mesh, 6, 2, NULL), RESULT_OK);
+        for (int v = 0; v < 6; ++v) {
+            mesh.position[v][axis] = v < 3 ? 0 : 1;
+            mesh.position[v][(axis + 1) % 3] = v % 3 == 1 ? 0.05f : 0;
+            mesh.position[v][(axis + 2) % 3] = v % 3 == 2 ? 0.05f : 0;
+            mesh.triangle[v / 3][v % 3] = (uint32_t)v;
+        }
+        judge_all(&mesh, 100, 2e-5, 1e-5); // coordinates of 107 spacings are rounded by 6.4e-6
+        mesh_destroy(&mesh);
+    }
+}
+
 static void read_head(Mesh *mesh)
 {
     Error error = {{0}};
@@ -410,6 +429,7 @@ int main(void)
         cmocka_unit_test(a_box_has_exact_distances_and_signs),
         cmocka_unit_test(a_sphere_has_its_distances),
         cmocka_unit_test(every_point_has_its_distance),
+        cmocka_unit_test(distances_reach_across_every_axis),
         cmocka_unit_test(the_bundled_head_has_exact_distances),
         cmocka_unit_test(holes_do_not_change_the_signs),
         cmocka_unit_test(a_mesh_turned_inside_out_is_the_same),
