@@ -286,6 +286,7 @@ printf 'v %s\n' '0 0.5 0' '0.1 0.49 0' '0.2 0.48 0' '0.3 0.47 0' >"$work/deep.ob
 echo 'l 1 2 3 4' >>"$work/deep.obj"
 run 0 "$work/deep.obj" --unit m --mesh "$work/box.obj" --mesh-unit m --push-out 0.002 -o "$work/out.tfx"
 says "--push-out: 3 of 4 vertices of 1 strands moved to 2 mm from the mesh; those inside were up to 30 mm deep, half of them up to 20 mm"
+run 0 "$work/deep.obj" --unit m --mesh "$work/box.obj" --mesh-unit m --stats; says "inside the mesh: 3 of 4 vertices, of 1 of 1 strands"
 printf 'v %s\n' '0 0.505 0' '0.1 0.6 0' >"$work/above.obj"
 echo 'l 1 2' >>"$work/above.obj"
 run 0 "$work/above.obj" --unit m --mesh "$work/box.obj" --mesh-unit m --attach -o "$work/out.tfx"

@@ -121,6 +121,38 @@ static void hair_throws_its_shadow_on_the_floor(void **state)
     assert_int_equal(studio_pixel(&studio, 5, SIDE / 2 - 10)[0], 0); // above the horizon
 }
 
+// Lights with and without a radius have other shaders.
+static void a_renderer_draws_soft_and_hard_light_in_turn(void **state)
+{
+    (void)state;
+    RendererOptions options = with_floor(&BLACK, FLOOR_PLANE);
+    Strands layers = make_layers();
+    size_t size;
+    options.raster = RASTER_QUADS;
+    for (int wide = 0; wide < 2; ++wide) {
+        use(&options);
+        add_layers(&layers);
+        studio.light = (Light){.direction = {0, 1, 0},
+                               .color = {1, 1, 1},
+                               .intensity = 0.5f,
+                               .radius = wide ? 20 : 0,
+                               .shadow = true};
+        uint8_t *first, *again;
+        studio_draw(&studio);
+        first = studio_copy(&studio, &size);
+        studio.light.radius = wide ? 0 : 20;
+        studio_draw(&studio);
+        assert_memory_not_equal(studio.image.pixels, first, size);
+        studio.light.radius = wide ? 20 : 0;
+        studio_draw(&studio);
+        again = studio_copy(&studio, &size);
+        assert_memory_equal(again, first, size);
+        free(first);
+        free(again);
+    }
+    strands_destroy(&layers);
+}
+
 static void expect_shadow(int column, int row, double share, double light)
 {
     const uint8_t *pixel = studio_pixel(&studio, column, row);
@@ -274,6 +306,7 @@ int main(void)
         CLAIM(without_a_floor_or_below_it_nothing_is_drawn),
         CLAIM(a_floor_is_lit_from_above_and_fades_beyond_its_radius),
         CLAIM(both_rasterisers_show_the_same_floor),
+        CLAIM(a_renderer_draws_soft_and_hard_light_in_turn),
     };
     return stage_run(tests);
 }

@@ -68,6 +68,10 @@ for words in "--cache $work/c.cache" "--part 2/3" "--first 3" "--frames 1" "--fr
     says "exposure: +$first EV (--exposure auto)"
 done
 # shellcheck disable=SC2086
+run 0 $exposed --frames 1 --size 400x300 --stats "$work/stats.json" -o "$work/large.png" # the meter draws at most 256 px
+exposure_near() { sed -n 's/.*"exposure": \([-0-9.][-0-9.]*\).*/\1/p' "$work/stats.json" | awk -v near="$first" '{ exit !(($1 - near) ^ 2 < 0.1 ^ 2) }'; }
+if exposure_near; then good; else bad "a large image has another exposure than $first"; fi
+# shellcheck disable=SC2086
 run 0 $exposed --frames 1 -o "$work/auto.png" -q
 # shellcheck disable=SC2086
 run 0 $exposed --frames 1 -o "$work/given.png" -q --exposure "$first"
