@@ -78,6 +78,7 @@ cp "$work/own/one.json" "$work/own/scene.json"
 run 1 light --reference "$work/own" --way none --frames 1 --picture "$work/own.png" --csv "$work/own_rows.csv"
 says "scene.json: not a case"; says "bounds are broken"; is_png "$work/own.png"
 same "$(field "$work/own_rows.csv" scene | tr '\n' ' ')" "one mean " "cases"
+same "$(field "$work/own_rows.csv" strands | head -1)" 40 "strands"
 same "$(field "$work/own_rows.csv" still_ms_min | awk '{ good += $1 > 0 } END { print good }')" 2 "rows with times"
 same "$(field "$work/own_rows.csv" repeat | awk '{ good += $1 < 1e-5 } END { print good }')" 2 "images that are drawn again at rest"
 
