@@ -66,14 +66,27 @@ typedef struct Trial {
     const char *name; // for messages
 } Trial;
 
+// What the test itself allocates does not count.
+static int pause_failing(void)
+{
+    return atomic_exchange(&allocations_left, INT_MAX);
+}
+
+static void go_on_failing(int left)
+{
+    atomic_store(&allocations_left, left);
+}
+
 static void append(Bytes *made, const void *data, size_t size)
 {
     if (!data) return;
+    int left = pause_failing();
     uint8_t *bytes = realloc(made->data, made->size + size + 1);
     assert_non_null(bytes);
     memcpy(bytes + made->size, data, size);
     made->data = bytes;
     made->size += size;
+    go_on_failing(left);
 }
 
 // Calls once with enough memory, and then once for each allocation of that call.
@@ -81,16 +94,16 @@ static void try_all(void **state, const Trial *trial, const char *path)
 {
     Bytes whole = {0};
     Error error = {{0}};
-    atomic_store(&allocations_left, MOST_ALLOCATIONS);
+    go_on_failing(MOST_ALLOCATIONS);
     if (trial->call(state, path, &whole, &error) != RESULT_OK)
         fail_msg("%s: %s", trial->name, error.text);
-    int all = MOST_ALLOCATIONS - atomic_exchange(&allocations_left, INT_MAX), failed = 0;
+    int all = MOST_ALLOCATIONS - pause_failing(), failed = 0;
     for (int i = 0; i < all; ++i) {
         Bytes made = {0};
         error = (Error){{0}};
-        atomic_store(&allocations_left, i);
+        go_on_failing(i);
         Result result = trial->call(state, path, &made, &error);
-        atomic_store(&allocations_left, INT_MAX);
+        pause_failing();
         bool same = made.size == whole.size && memcmp(made.data, whole.data, made.size) == 0;
         if (result == RESULT_OK && !same)
             fail_msg("%s: allocation %d of %d fails, and another result comes", trial->name, i,
@@ -102,12 +115,6 @@ static void try_all(void **state, const Trial *trial, const char *path)
     }
     if (2 * failed < all) fail_msg("%s: only %d of %d are noticed", trial->name, failed, all);
     bytes_destroy(&whole);
-}
-
-// What the test itself allocates does not count.
-static int pause_failing(void)
-{
-    return atomic_exchange(&allocations_left, INT_MAX);
 }
 
 // --- Hair.
@@ -130,7 +137,6 @@ static Result read_hair(void **state, const char *path, Bytes *made, Error *erro
     Result result = strands_read_frames(&strands, &frames, path,
                                         &(StrandsReadOptions){.unit = 1.0f}, NULL, error);
     if (result != RESULT_OK) return result;
-    int left = pause_failing();
     size_t n = strands.strand_count, vertices = strands.vertex_count;
     append(made, strands.first, (n + 1) * sizeof *strands.first);
     append(made, strands.position, vertices * sizeof *strands.position);
@@ -143,7 +149,6 @@ static Result read_hair(void **state, const char *path, Bytes *made, Error *erro
     append(made, frames.position, frames.count * vertices * sizeof *frames.position);
     strands_frames_destroy(&frames);
     strands_destroy(&strands);
-    atomic_store(&allocations_left, left);
     return result;
 }
 
@@ -179,7 +184,7 @@ static Result write_hair(void **state, const char *path, Bytes *made, Error *err
         remove(path);
     }
     assert_int_equal(temporary_count_files(temporary_path(state, ".")), 0);
-    atomic_store(&allocations_left, left);
+    go_on_failing(left);
     return result;
 }
 
@@ -211,10 +216,8 @@ static Result read_mesh(void **state, const char *path, Bytes *made, Error *erro
     (void)state;
     Result result = mesh_read(&mesh, path, 1, false, error);
     if (result != RESULT_OK) return result;
-    int left = pause_failing();
     append_mesh(made, &mesh);
     mesh_destroy(&mesh);
-    atomic_store(&allocations_left, left);
     return result;
 }
 
@@ -226,16 +229,13 @@ static Result read_sequence(void **state, const char *path, Bytes *made, Error *
     Mesh mesh = {0}, rest = {0};
     (void)state;
     Result result = mesh_sequence_read(&sequence, &mesh, &rest, path, &options, error);
-    int left = pause_failing();
-    if (result == RESULT_OK) {
-        append_mesh(made, &mesh);
-        append(made, sequence.position,
-               sequence.times.count * sequence.vertex_count * sizeof *sequence.position);
-        mesh_sequence_destroy(&sequence);
-        mesh_destroy(&mesh);
-        mesh_destroy(&rest);
-    }
-    atomic_store(&allocations_left, left);
+    if (result != RESULT_OK) return result;
+    append_mesh(made, &mesh);
+    append(made, sequence.position,
+           sequence.times.count * sequence.vertex_count * sizeof *sequence.position);
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&mesh);
+    mesh_destroy(&rest);
     return result;
 }
 
@@ -267,20 +267,16 @@ static void meshes_are_read_whole_or_not_at_all(void **state)
 
 static ImageTexts texts;
 
-static Result keep(Bytes *made, Bytes *file, Result result)
+static Result keep(Bytes *made, const Bytes *file, Result result)
 {
-    int left = pause_failing();
     if (result == RESULT_OK) append(made, file->data, file->size);
-    atomic_store(&allocations_left, left);
     return result;
 }
 
 static Result keep_image(Bytes *made, Image *image, Result result)
 {
-    int left = pause_failing();
     if (result == RESULT_OK) append(made, image->pixels, image_size(image));
     image_destroy(image);
-    atomic_store(&allocations_left, left);
     return result;
 }
 
@@ -289,7 +285,7 @@ static void make_image(Image *image, ImageKind kind)
     int left = pause_failing();
     assert_int_equal(image_create_kind(image, 7, 5, 3, kind, NULL), RESULT_OK);
     for (size_t i = 0; i < image_size(image); ++i) image->pixels[i] = (uint8_t)(i % 4 * 20);
-    atomic_store(&allocations_left, left);
+    go_on_failing(left);
 }
 
 static Result copy_png(void **state, const char *path, Bytes *made, Error *error)
@@ -302,11 +298,8 @@ static Result copy_png(void **state, const char *path, Bytes *made, Error *error
     Result result = keep(made, &file, png_encode(&image, &texts, &file, error));
     THEN(result, keep_image(made, &back, png_decode_deep(&back, &file, "png", error)));
     THEN(result, png_decode_texts(&own, &file, "png", error));
-    for (size_t i = 0; result == RESULT_OK && i < own.count; ++i) {
-        int left = pause_failing();
+    for (size_t i = 0; result == RESULT_OK && i < own.count; ++i)
         append(made, own.list[i].value, strlen(own.list[i].value));
-        atomic_store(&allocations_left, left);
-    }
     image_texts_destroy(&own);
     bytes_destroy(&file);
     image_destroy(&image);
@@ -392,7 +385,7 @@ static Result read_scene_file(void **state, const char *path, Bytes *made, Error
     free(text);
     json_decref(json);
     scene_destroy(&scene);
-    atomic_store(&allocations_left, left);
+    go_on_failing(left);
     return result;
 }
 
