@@ -12,7 +12,7 @@
 // files that are 2 to 5 % larger (docs/notes/png.md).
 enum { DEFLATE_LEVEL = 1, INDICES_DEFLATE_LEVEL = 9 };
 enum { PIECE_BYTES = 1 << 15 }; // rows are filtered and compressed while they are in the cache
-// ISA-L (up to 2.32) hashes the third byte of a stream together with the stream's address
+// ISA-L (up to 2.32) hashes the address of a stream in place of the bytes from its third on
 // (.write_first_byte in its igzip_icf_body_h1_gr_bt.asm), so that one file in thousands had other
 // matches. The first 4 to 16 bytes, flushed on their own, take a path without this error and make
 // the file 6 to 8 bytes longer (docs/notes/png.md).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Hair, meshes and images that are read and written while memory is short: in turn, one allocation
-// fails each time, also in the libraries. Then the result is an error or what it would have been,
-// never a part of it.
+// Hair, meshes, images and scenes that are read and written while memory is short: in turn, one
+// allocation fails each time, also in the libraries. Then the result is an error or what it would
+// have been, never a part of it.
 #include "base/bytes.h"
 #include "gen/strands_make.h"
 #include "image/exr_file.h"
@@ -373,13 +373,14 @@ static void images_are_copied_whole_or_not_at_all(void **state)
 
 // --- Scenes.
 
-static Result read_scene_file(void **state, const char *path, Bytes *made, Error *error)
+static Result copy_scene(void **state, const char *path, Bytes *made, Error *error)
 {
     Scene scene;
     (void)state;
     Result result = scene_read(&scene, path, error);
-    int left = pause_failing();
     json_t *json = result == RESULT_OK ? scene_to_json(&scene) : NULL;
+    int left = pause_failing();
+    if (result == RESULT_OK && !json) result = error_set(error, RESULT_FAILED, "no JSON");
     char *text = json ? json_text(json, JSON_INDENT(1) | JSON_SORT_KEYS) : NULL;
     if (text) append(made, text, strlen(text));
     free(text);
@@ -389,12 +390,12 @@ static Result read_scene_file(void **state, const char *path, Bytes *made, Error
     return result;
 }
 
-static void scenes_are_read_whole_or_not_at_all(void **state)
+static void scenes_are_copied_whole_or_not_at_all(void **state)
 {
     static const char *const FILES[] = {"tests/data/scene_full.json", "assets/gust.json",
                                         "assets/pair.json"};
     for (size_t i = 0; i < sizeof FILES / sizeof *FILES; ++i)
-        try_all(state, &(Trial){read_scene_file, FILES[i]}, FILES[i]);
+        try_all(state, &(Trial){copy_scene, FILES[i]}, FILES[i]);
 }
 
 int main(void)
@@ -406,7 +407,7 @@ int main(void)
                                         temporary_destroy),
         cmocka_unit_test_setup_teardown(meshes_are_read_whole_or_not_at_all, temporary_create,
                                         temporary_destroy),
-        cmocka_unit_test(scenes_are_read_whole_or_not_at_all),
+        cmocka_unit_test(scenes_are_copied_whole_or_not_at_all),
         cmocka_unit_test(images_are_copied_whole_or_not_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
