@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/driver_threads.h"
 
-#include <dirent.h>
+#include "support/threads.h"
+
 #include <inttypes.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,23 +14,6 @@
 
 #include <cmocka.h>
 
-// Counts the rasteriser's threads, and threads for compute shaders.
-static int count_threads(void)
-{
-    int count = 0;
-    DIR *tasks = opendir("/proc/self/task");
-    for (struct dirent *task; tasks && (task = readdir(tasks));) {
-        char path[300], name[64] = "";
-        snprintf(path, sizeof path, "/proc/self/task/%s/comm", task->d_name);
-        FILE *file = fopen(path, "r");
-        if (!file) continue;
-        if (fgets(name, sizeof name, file) && strncmp(name, "llvmpipe", 8) == 0) ++count;
-        fclose(file);
-    }
-    if (tasks) closedir(tasks);
-    return count;
-}
-
 // FNV-1a hash.
 static uint64_t digest(const unsigned char *bytes, size_t size)
 {
@@ -40,7 +24,7 @@ static uint64_t digest(const unsigned char *bytes, size_t size)
 
 void driver_threads_tell(const Gpu *gpu, const void *bytes, size_t size)
 {
-    int threads = strstr(gpu->renderer, "llvmpipe") ? count_threads() : -1;
+    int threads = strstr(gpu->renderer, "llvmpipe") ? threads_named("llvmpipe") : -1;
     printf("found %016" PRIx64 " of %zu by %d\n", digest(bytes, size), size, threads);
 }
 
