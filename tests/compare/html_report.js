@@ -40,7 +40,7 @@ async function driveList() {
 
 async function driveModes() {
     await goTo("differ.png");
-    claim("both images are there at their size", layer("a").naturalWidth === 160 && layer("b").naturalHeight === 120);
+    await until(() => layer("a").naturalWidth === 160 && layer("b").naturalHeight === 120, "both images are there at their size");
     claim("side by side: each in its pane", !document.querySelector("#pane-a .a").hidden && layer("a").hidden && !layer("b").hidden);
     press("2");
     const divider = byId("divider"), box = byId("pane-b").getBoundingClientRect();
@@ -88,7 +88,7 @@ async function driveZoom() {
     claim("0 fits again", near(state.scale, before));
     press("w");
     await until(() => byId("readout").textContent.includes("B − A"), "the pixel under the pointer is read");
-    const [a, b] = [await pictures.levels("a"), await pictures.levels("b")];
+    const [a, b] = await value(Promise.all([pictures.levels("a"), pictures.levels("b")]), "both images are decoded");
     const [px, py] = state.chosen.at_pixel, i = 4 * (py * 160 + px);
     const most = Math.max(...[0, 1, 2].map((k) => Math.abs(a.data[i + k] - b.data[i + k])));
     claim("w goes to the largest difference, whose levels differ by it", most === state.chosen.largest_difference && byId("readout").textContent.startsWith("x " + px + "  y " + py));
@@ -108,8 +108,8 @@ async function driveFigures() {
     press("a");
     claim("all that can be accepted are counted", byId("accept-all").textContent === "Copy 4 accept commands");
     await goTo("float.pfm");
-    claim("floats have a picture of 8 bits", layer("b").naturalWidth === 4);
-    const level = (await pictures.levels("b")).data.slice(0, 3).join();
+    await until(() => layer("b").naturalWidth === 4, "floats have a picture of 8 bits");
+    const level = (await value(pictures.levels("b"), "it is decoded")).data.slice(0, 3).join();
     claim("through the curve of sRGB, clamped", level === "188,255,0");
     await goTo("same.png");
     press("4");

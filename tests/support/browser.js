@@ -15,6 +15,15 @@ async function until(holds, what) {
     claim(what, Boolean(holds()));
 }
 
+// The promise's value. Work of the browser alone, as of createImageBitmap, does not hold back the virtual clock: while a
+// script waits for nothing else, the clock leaps to its end, and so does the test.
+async function value(promise, what) {
+    let kept, settled = false;
+    promise.then((result) => (kept = result)).finally(() => (settled = true));
+    await until(() => settled, what);
+    return kept;
+}
+
 function press(key, more = {}) {
     document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true, ...more }));
 }
