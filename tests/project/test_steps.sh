@@ -29,7 +29,7 @@ left() {
 ends() {
     signal=$1; shift
     rm -rf "$here" "$work/started"; mkdir "$here"
-    env --default-signal=INT TRACTRIX_BIN="${programs:-$work/fake}" PATH="$work/fake:$PATH" timeout -k 1 --foreground 60 "$@" >"$work/out" 2>"$work/err" </dev/null &
+    env --default-signal=INT TRACTRIX_BIN="${programs:-$work/fake}" PATH="$work/fake:$PATH" timeout -k 4 --foreground 60 "$@" >"$work/out" 2>"$work/err" </dev/null &
     pid=$!
     for _ in $(seq 200); do
         if [ -s "$work/started" ] || [ -n "$(find "$here" -name '*cache' -size +0 2>/dev/null)" ]; then break; fi

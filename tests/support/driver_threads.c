@@ -24,7 +24,14 @@ static uint64_t digest(const unsigned char *bytes, size_t size)
 
 void driver_threads_tell(const Gpu *gpu, const void *bytes, size_t size)
 {
-    int threads = strstr(gpu->renderer, "llvmpipe") ? threads_named("llvmpipe") : -1;
+    const char *asked = getenv("LP_NUM_THREADS");
+    int threads = -1;
+    // A thread has its name only after it has begun.
+    for (int i = 0; i < 500 && strstr(gpu->renderer, "llvmpipe"); ++i) {
+        threads = threads_named("llvmpipe");
+        if (!asked || threads >= atoi(asked)) break;
+        usleep(10000);
+    }
     printf("found %016" PRIx64 " of %zu by %d\n", digest(bytes, size), size, threads);
 }
 
