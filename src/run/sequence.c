@@ -268,9 +268,10 @@ Result sequence_run(Sequence *sequence, Error *error)
     progress_start(&progress, stderr, all, run->quiet);
     for (int frame = 0; frame <= last && result == RESULT_OK; ++frame) {
         if (!wants(sequence, frame) && !frame_source_needs(sequence->source, frame)) continue;
-        result = interrupt_requested() ? error_set(error, RESULT_INTERRUPTED,
-                                                   "interrupted after %d of %d frames", frame, all)
+        result = interrupt_requested() ? RESULT_INTERRUPTED
                                        : run_frame(sequence, &carried, frame, error);
+        if (result == RESULT_INTERRUPTED) // also while a frame waits to be written
+            error_set(error, result, "interrupted after %d of %d frames", frame, all);
         progress_update(&progress, frame + 1);
     }
     Result ended = end(sequence, &carried, result == RESULT_OK ? error : NULL);
