@@ -19,6 +19,7 @@ echo "{$run, \"bodies\": [{$one}, {$two}]}" >"$work/both.json"
 echo "{$run, \"bodies\": [{$one}]}" >"$work/listed.json"
 echo "{$run, \"bodies\": [{$two}, {$one}]}" >"$work/swapped.json"
 both="$work/both.json"
+hair='"sections": [{"file": "curls.tfx"}]'
 
 claim "a list of one body is the scene without a list"
 run 0 "$work/one.json" -q -o "$work/one/"
@@ -52,6 +53,21 @@ claim "each body is drawn where it is, whichever stands first"
 run 0 "$work/swapped.json" -q -o "$work/swapped/"
 holds "$bin/tractrix-compare" -q "$work/direct/frame_0003.png" "$work/swapped/frame_0003.png" --pixel-tolerance 8 --max-failing-pixels 1%
 
+claim "strands that represent all of them are counted for each body"
+curls=300 # strands in curls.tfx
+lit='"frames": 1, "followers": 0, "size": "48x32", "raster": "blocks", "radius": 0.002'
+echo "{$lit, \"bodies\": [{$hair}, {$hair, \"head\": {\"translate\": [0.3, 0, 0]}}]}" >"$work/lit.json"
+same() { # A, B: images with the same pixels
+    "$bin/tractrix-compare" -q "$work/$1.png" "$work/$2.png" --pixel-tolerance 0 >"$work/out" 2>&1
+}
+run 0 "$work/lit.json" -q --scatter-strands 0 --shadow-strands 0 -o "$work/all.png"
+for option in --scatter-strands --shadow-strands; do
+    run 0 "$work/lit.json" -q --scatter-strands 0 --shadow-strands 0 $option "$curls" -o "$work/most.png"
+    if same all most; then good; else bad "$option $curls leaves strands out"; fi
+    run 0 "$work/lit.json" -q --scatter-strands 0 --shadow-strands 0 $option $((curls / 2)) -o "$work/half.png"
+    if same all half; then bad "$option: half of the strands, and no difference"; else good; fi
+done
+
 claim "another name of a body's mesh does not matter to the cache, its content and its motion do"
 cp "$work/big.obj" "$work/renamed.obj"
 sed 's/big.obj/renamed.obj/' "$both" >"$work/other.json"
@@ -67,7 +83,6 @@ refused() { # JSON, expected
     echo "$1" >"$work/bad.json"
     run 3 "$work/bad.json" -q -o "$work/x/"; one_line; says "$2"
 }
-hair='"sections": [{"file": "curls.tfx"}]'
 refused '{"bodies": []}' "bodies: got [], expected an array of 1 to 16 bodies"
 refused "{\"bodies\": [{$hair}], $hair}" "'sections' beside 'bodies': expected this key in a body"
 refused "{\"bodies\": [{$hair}], \"head\": {\"translate\": [1, 0, 0]}}" "'head' beside 'bodies': expected this key in a body"
