@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene that is written while memory is short.
+// A scene that is written while memory is short. jansson gets an allocator of this test: the usual
+// one (json.c) has a reserve, so that one failing malloc does not reach the writer of scenes.
 #include "support/scene_reader.h"
 
 #include <limits.h>
