@@ -90,7 +90,8 @@ COMPLETIONS := $(foreach shell,$(SHELLS),$(addsuffix .$(shell),$(PROGRAMS) $(SCR
 FAULTY    := $(PROGRAMS:$(OUT)/%=$(OUT)/faults/%)
 FAULT_CALLS := $(shell sed -nEf tests/faults/wrapped.sed tests/faults/calls.def)
 TORTURE   := $(OUT)/tests/faults/torture
-TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c,$(wildcard tests/faults/*.c)))
+DELAYS    := $(OUT)/tests/faults/delays.so
+TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c tests/faults/delays.c,$(wildcard tests/faults/*.c)))
 FOLDERS   := $(sort $(OUT)/lib/ $(OUT)/lib/pkgconfig/ $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
 
 # --- Build. Recipes that call make use all processors unless -j says otherwise.
@@ -196,6 +197,8 @@ $(OUT)/faults/$(patsubst main_%,tractrix-%,$(notdir $(1))): $(OUT)/$(1).o $(OUT)
 	$$(call run,LINK,$$(CC) $$(LD_FLAGS) $$(FAULT_CALLS:%=-Wl,--wrap=%) -o $$@ $$^ $$(LD_LIBS))
 endef
 $(foreach main,$(MAINS:src/%.c=%),$(eval $(call faulty,$(main))))
+$(DELAYS): $(OUT)/tests/faults/delays.o
+	$(call run,LINK,$(CC) -shared -o $@ $<)
 $(TORTURE): $(TORTURE_OBJECTS) $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$(call run,LINK,$(CC) $(LD_FLAGS) -o $@ $^ $(LD_LIBS))
 
@@ -256,6 +259,12 @@ LONG_TESTS = ^test_stress\.c
 torture: all tests ## let every system call of small runs fail in turn, kill 200 runs, run long tests: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
 	@TEST_LONG=1 tests/runner $(OUT) '$(LONG_TESTS)'
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
+
+# Not: test_steps, because shells read scripts byte by byte and then take longer than it allows; test_mutate, whose
+# sanitizers want to be loaded first; test_short_memory, which replaces malloc; tests that read and draw much, but wait for nothing.
+DELAYS_BUT = ^test_(blender|docs|goldens|light_command|mutate|recorded_.*|short_memory|steps|swatches)([.]|$$)
+delays: all tests $(DELAYS) ## run the tests with random delays in files and threads, as on a slow machine: three minutes (ONLY=NAME)
+	@LD_PRELOAD=$(CURDIR)/$(OUT)/tests/faults/delays.so tests/runner $(OUT) '$(or $(ONLY),^test_)' '$(DELAYS_BUT)'
 
 growth: all tests ## make 10,000 scenes and simulations and 100 devices with the library, count memory that stays: five minutes
 	@TEST_ROUNDS=10000 $(OUT)/tests/library/test_library_growth
@@ -446,7 +455,7 @@ help: ## print this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress mutate torture growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress mutate torture delays growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(wildcard $(OUT)/*.d $(OUT)/*/*.d $(OUT)/*/*/*.d)
