@@ -311,13 +311,13 @@ class Parameters(TypedDict, total=False):
     """maximum orders of scattering of --scatter grid; it stops earlier when the rest can be extrapolated [1 to 32;
     default 16]"""
     scatter_strands: int
-    """minimum number of strands, for each body, that represent all hair in --scatter grid; 0: use all strands [0 to
-    1000000; default 3000]"""
+    """minimum number of strands that represent all hair in --scatter grid; multiplied by the number of bodies; 0: use
+    all strands [0 to 1000000; default 3000]"""
     shadow_size: int
     """width and height of a light's shadow map [64 to 2048 px; default 512]"""
     shadow_strands: int
-    """minimum number of strands, for each body, that represent all hair in shadow maps of --raster blocks; 0: use all
-    strands [0 to 1000000; default 20000]"""
+    """minimum number of strands that represent all hair in shadow maps of --raster blocks; multiplied by the number of
+    bodies; 0: use all strands [0 to 1000000; default 20000]"""
     shadow_opacity: float
     """share of the light that a fibre blocks [0 to 1; default 1]"""
     shadow_spacing: float

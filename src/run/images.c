@@ -83,7 +83,7 @@ static RendererOptions describe_images(const Images *images, ImageKind kind)
     const RunParams *run = &images->scene->run;
     RendererOptions options = renderer_options_of(run);
     options.exposure = run->exposure.value;
-    options.shadow.strands *= (int)images->scene->body_count; // they are for each body
+    options.shadow.strands *= (int)images->scene->body_count; // all bodies share the sample
     options.scatter.strands *= images->scene->body_count;
     options.tone = (Tone)run->tone_map;
     options.kind = kind;

@@ -53,7 +53,7 @@ claim "each body is drawn where it is, whichever stands first"
 run 0 "$work/swapped.json" -q -o "$work/swapped/"
 holds "$bin/tractrix-compare" -q "$work/direct/frame_0003.png" "$work/swapped/frame_0003.png" --pixel-tolerance 8 --max-failing-pixels 1%
 
-claim "strands that represent all of them are counted for each body"
+claim "the numbers of strands that represent all of them are multiplied by the number of bodies"
 curls=300 # strands in curls.tfx
 lit='"frames": 1, "followers": 0, "size": "48x32", "raster": "blocks", "radius": 0.002'
 echo "{$lit, \"bodies\": [{$hair}, {$hair, \"head\": {\"translate\": [0.3, 0, 0]}}]}" >"$work/lit.json"
