@@ -19,8 +19,7 @@
 //   4. Rebuild the strand from the root with exact lengths.
 // Where a violent step leaves a segment off by more than half its length, two passes of tractrices
 // replace this (rescue). Long strands at long steps would gain energy by either way;
-// energy_account.glsl limits that. BENDS 1: the forces and masses of bend.glsl enter the second
-// system.
+// energy_account.glsl limits that.
 //
 // The sweeps run along the strand in alternating directions; each sweep does the back substitution
 // of one elimination and the elimination of the next. Positions are relative to the new root.
@@ -30,9 +29,6 @@
 #include "sim/strand.glsl"
 #include "sim/tractrix.glsl"
 #include "sim/tridiagonal.glsl"
-#if BENDS
-#include "sim/bend.glsl"
-#endif
 const float ALLOWED = 0.005; // share of the energy
 #define SLOWS_AGAIN 0
 #include "sim/energy_account.glsl"
@@ -48,18 +44,14 @@ vec3 predicted(Strand strand, int j, inout vec3 style)
     return (q - strand.root) + predicted_move(strand, j, q, style);
 }
 
-// From root to tip: predicts positions and sets up the rows of the tensions. Returns the bending
-// energy.
-float predict(Strand strand)
+// From root to tip: predicts positions and sets up the rows of the tensions.
+void predict(Strand strand)
 {
     int last = LAST;
     vec3 q_before = strand.root_old, p_before = vec3(0.0), r_before = vec3(0.0), style = vec3(0.0);
     Row row = NO_ROW;
     keep(0, vec4(0.0));
     keep_beside(0, 0.0);
-#if BENDS
-    Frames frames = frames_open(strand);
-#endif
     for (int j = 1; j <= last; ++j) {
         vec3 q = fetch_position(strand, j), p = predicted(strand, j, style), r = q - q_before,
              s = p - p_before;
@@ -68,36 +60,8 @@ float predict(Strand strand)
                         l * (sqrt(dot(s, s)) - l), factor);
         keep(j, vec4(p, row.value));
         keep_beside(j, factor);
-#if BENDS
-        keep_goal(j, frames_advance(frames, r / l, fetch_rest(strand, j)));
-#endif
         q_before = q, p_before = p, r_before = r;
     }
-#if BENDS
-    return bend_stiffness(last) * frames.energy;
-#else
-    return 0.0;
-#endif
-}
-
-// The part of segment j's tension that corrections of earlier steps found missing (bend.glsl).
-float carried_tension(Strand strand, int j)
-{
-#if BENDS
-    return bend_acts(strand) * velocity_before(strand.address + j * STRAND_TILE).w;
-#else
-    return 0.0;
-#endif
-}
-
-// At rest neither the tension nor its approximation in step 1 exceeds the sum of the forces beyond
-// the segment.
-float limit_carried(Strand strand, int j, float carried)
-{
-    float move = strand.dt * length(strand.push) * (1.0 - strand.spring.pull) +
-                 2.0 * strand.total_length * strand.spring.pull;
-    float most = 2.0 * float(LAST + 1 - j) * move / fetch_rest(strand, max(j, 1)).w;
-    return clamp(carried, -most, most);
 }
 
 float implicit_share(float tension)
@@ -112,33 +76,17 @@ void pull_implicitly(Strand strand)
     float lambda = 0.0, factor_beyond = 0.0, implicit_beyond = 0.0;
     vec3 g_beyond = vec3(0.0), q = fetch_position(strand, LAST), v = fetch_velocity(strand, LAST);
     Row3 row = NO_ROW3;
-#if BENDS
-    float acts = bend_acts(strand), stiffness = acts * bend_stiffness(LAST), mass_beyond = 0.0,
-          l_beyond = 0.0;
-    vec3 h_beyond = vec3(0.0);
-    Moment moment = NO_MOMENT;
-    float kept = max(strand.decay, 1.0 - 0.9 / float(LAST));
-#endif
     for (int j = LAST; j >= 1; --j) {
         vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1),
              v_before = fetch_velocity(strand, j - 1);
         vec4 k = recall(j);
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
-        float along = lambda + carried_tension(strand, j), tension = max(along, 0.0),
-              theta = implicit_share(tension), factor;
+        float tension = max(lambda, 0.0), theta = implicit_share(tension), factor;
         vec3 r = q - q_before, r_old = r - strand.dt * (v - v_before);
-        vec3 g = (along - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
+        vec3 g = (lambda - tension) * r + tension * ((1.0 - 2.0 * theta) * r + theta * r_old);
         float off = implicit_beyond, diagonal = 1.0 + (theta * tension + implicit_beyond);
         vec3 y = k.xyz - g + g_beyond;
-#if BENDS
-        float l = fetch_rest(strand, j).w,
-              mass = MASS * stiffness / l * max(1.0, 0.5 * l_beyond / l);
-        vec3 h = mass * (r + kept * (r - r_old)) -
-                 stiffness * bend_gradient(r, l, recall_goal(j), moment);
-        off += mass_beyond, diagonal += mass + mass_beyond, y += h - h_beyond;
-        mass_beyond = mass, h_beyond = h, l_beyond = l;
-#endif
         row = eliminate(row, -off, diagonal, y, factor);
         keep(j, vec4(row.value, factor));
         q = q_before, v = v_before, g_beyond = g, implicit_beyond = theta * tension;
@@ -184,9 +132,6 @@ void correct_again(Strand strand)
         vec4 k = recall(j); // zero if j = 0
         lambda = k.w - factor_beyond * lambda;
         factor_beyond = recall_beside(j);
-#if BENDS
-        keep_carried(j, limit_carried(strand, j, carried_tension(strand, j) + lambda));
-#endif
         vec3 t = lambda * k.xyz;
         if (j < LAST) {
             vec3 s = here.s + t + t_beyond - (j == 0 ? 1.0 : 2.0) * here.t;
@@ -234,9 +179,9 @@ int finish(Strand strand)
 
 // Stores the velocity first: compilers may delay the fetch of q until it is used, which could be
 // after a store to the buffer that q comes from.
-void put(Strand strand, int j, vec3 x, vec3 q, float carried)
+void put(Strand strand, int j, vec3 x, vec3 q)
 {
-    velocities[strand.address + j * STRAND_TILE] = vec4((x - q) / strand.dt, carried);
+    velocities[strand.address + j * STRAND_TILE] = vec4((x - q) / strand.dt, 0.0);
     positions[strand.address + j * STRAND_TILE] = vec4(x, 1.0);
 }
 
@@ -245,25 +190,13 @@ void write(Strand strand, inout Account account)
 {
     int last = LAST;
     vec3 x = strand.root, style = vec3(0.0);
-#if BENDS
-    Frames frames = frames_open(strand);
-#endif
     for (int j = 1; j <= last; ++j) {
         vec3 q = fetch_position(strand, j), v = fetch_velocity(strand, j),
              free = predicted_move(strand, j, q, style), s = recall(j).xyz;
         x += s;
         account_add(account, strand, x - q, free, v);
-#if BENDS
-        put(strand, j, x, q, recall_carried(j) / bend_acts(strand));
-        vec4 segment = fetch_rest(strand, j);
-        frames_advance(frames, s / segment.w, segment);
-#else
-        put(strand, j, x, q, 0.0);
-#endif
+        put(strand, j, x, q);
     }
-#if BENDS
-    account.stored = bend_stiffness(last) * frames.energy;
-#endif
 }
 
 // Two passes of tractrices (as in hybrid.comp) instead. Loops are not unrolled: on a CPU driver all
@@ -293,9 +226,6 @@ void rescue(Strand strand, inout Account account)
         q = q_before;
     }
     vec3 move = limit_move(-y), x = strand.root;
-#if BENDS
-    Frames frames = frames_open(strand);
-#endif
     for (int j = 1; j <= last; ++j) {
         float l = fetch_rest(strand, j).w;
         vec3 d = tractrix_turn(
@@ -303,32 +233,23 @@ void rescue(Strand strand, inout Account account)
         q = fetch_position(strand, j);
         d = direction(d);
         x += l * d;
-#if BENDS
-        frames_advance(frames, d, fetch_rest(strand, j));
-#endif
         vec3 now = x - q - account.moved;
         sum += now;
         squares += dot(now, now);
-        put(strand, j, x, q, 0.0);
+        put(strand, j, x, q);
     }
-#if BENDS
-    account.stored = bend_stiffness(last) * frames.energy;
-#endif
     account_add_sums(account, strand.dt * strand.push, sum, sum_before, squares, squares_before);
 }
 
-void main()
+void step_strand(int s)
 {
-    int s = first_strand();
-    if (s >= int(step_params.strand_count)) return;
-    keep_open(s);
     Strand strand = strand_open(s, chain_params.spring);
-    float bent = predict(strand);
+    predict(strand);
     pull_implicitly(strand);
     correct(strand);
     correct_again(strand);
     bool violent = finish(strand) > floatBitsToInt(MOST_OFF);
-    Account account = account_open(strand, bent);
+    Account account = account_open(strand);
     if (violent)
         rescue(strand, account);
     else
@@ -337,3 +258,4 @@ void main()
     float gained = account_close(account, strand, int(step_params.vertex_count - 1u));
     velocities[strand.address] = vec4(account.moved / strand.dt, gained);
 }
+#include "sim/each_strand.glsl"

@@ -3,9 +3,5 @@
 #include "common/shared.h"
 #include "sim/style_spring.h"
 
-UNIFORM_BLOCK(ChainParams, chain_params, BIND_SOLVER)
-{
-    StyleSpring spring;
-    float bend; // K of bend.glsl, m/s^2
-}
+UNIFORM_BLOCK(ChainParams, chain_params, BIND_SOLVER) { StyleSpring spring; }
 END_BLOCK(ChainParams, chain_params);

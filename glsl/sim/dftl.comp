@@ -22,8 +22,6 @@
 #include "sim/particles.glsl"
 #include "sim/strand.glsl"
 
-#undef BENDS
-#define BENDS 0
 const float ALLOWED = 0.003; // share of the energy
 #define SLOWS_AGAIN 1
 #include "sim/energy_account.glsl"
@@ -40,7 +38,7 @@ void main()
     vec3 leader = strand.root, leader_velocity = strand.root_velocity, style = vec3(0.0),
          along = rotate(strand.rotation, fetch_rest(strand, 1).xyz), x = fetch_position(strand, 1);
 #if GUARDED
-    Account account = account_open(strand, 0.0);
+    Account account = account_open(strand);
     float paid = velocity_before(tip).w;
 #endif
     positions[strand.address] = vec4(leader, 1.0);

@@ -253,12 +253,10 @@ void finish(Strand strand)
 #endif
 }
 
-void main()
+void step_strand(int s)
 {
-    int s = first_strand();
-    if (s >= int(step_params.strand_count)) return;
-    keep_open(s);
     Strand strand = strand_open(s, emulation_params.spring);
     if (step_params.phase == 0u) predict(strand);
     if (pull_all(strand)) finish(strand);
 }
+#include "sim/each_strand.glsl"

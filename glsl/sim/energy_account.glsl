@@ -13,8 +13,8 @@
 // was last at its lowest. ALLOWED (set by the solver) is the permitted gain, as a share of the
 // energy that gravity could give to the strand and of the energy that it has. If a exceeds that,
 // the strand moves only by the share k of its way: each segment turns from its old direction
-// towards the new one. For moves k m, X = A k^2 + B k + C (the energy of springs is assumed linear
-// along the way, in B), so the greatest k within ALLOWED follows directly. Segments that turn far
+// towards the new one. For moves k m, X = A k^2 + B k + C, so the greatest k within ALLOWED follows
+// directly. Segments that turn far
 // move by more than k; this difference goes into the account. If no k suffices, take the k with the
 // smallest gain and reduce the velocities to pay for the rest.
 //
@@ -27,15 +27,13 @@ const float NOISE = 1e-6; // of a position; rounding errors are 6e-8
 struct Account {
     vec3 moved, moved_before;        // of the root, in this step and in the previous one
     float squares, linear, constant; // energies, times 2 dt^2
-    float stored_before, stored;     // in springs that count as constraints
     float gained;                    // in earlier steps, not paid yet
 };
 
-Account account_open(Strand strand, float stored)
+Account account_open(Strand strand)
 {
     vec4 before = velocity_before(strand.address);
-    return Account(strand.root - strand.root_old, before.xyz * strand.dt, 0.0, 0.0, 0.0, stored,
-                   stored, before.w);
+    return Account(strand.root - strand.root_old, before.xyz * strand.dt, 0.0, 0.0, 0.0, before.w);
 }
 
 // Adds a particle that moved by `move`, would have moved by `free` without constraints, and had the
@@ -79,13 +77,9 @@ const float LESS = 0.4;    // factor of each reduction; one half would leave it 
                            // a flipping segment goes
 #endif
 
-// Scales the strand's move by `share` and also its velocities by `kept`. Returns the energy of the
-// springs afterwards.
-float account_slow(inout Account account, Strand strand, int last, float share, float kept)
+// Scales the strand's move by `share` and also its velocities by `kept`.
+void account_slow(inout Account account, Strand strand, int last, float share, float kept)
 {
-#if BENDS
-    Frames frames = frames_open(strand);
-#endif
     float squares = 0.0;
     vec3 x = strand.root, x_full = strand.root, q = strand.root_old,
          root = account.moved / strand.dt;
@@ -97,20 +91,12 @@ float account_slow(inout Account account, Strand strand, int last, float share, 
         vec3 d = direction(mix(from - q, full - x_full, share));
         x += segment.w * d;
         x_full = full, q = from;
-#if BENDS
-        frames_advance(frames, d, segment);
-#endif
         velocities[a] = vec4(root + kept * ((x - from) / strand.dt - root), v.w);
         positions[a] = vec4(x, 1.0);
         vec3 now = x - from - account.moved;
         squares += dot(now, now);
     }
     account.squares = squares;
-#if BENDS
-    return bend_stiffness(last) * frames.energy;
-#else
-    return account.stored;
-#endif
 }
 
 // An estimate of the energy that gravity and wind could give to the strand.
@@ -133,7 +119,7 @@ float account_noise(Strand strand, int last)
 float account_close(inout Account account, Strand strand, int last)
 {
     float per_square = 0.5 / (strand.dt * strand.dt), kinetic = per_square * account.squares,
-          linear = per_square * account.linear + (account.stored - account.stored_before);
+          linear = per_square * account.linear;
     float constant = account.gained + per_square * account.constant;
     float fall = ALLOWED * account_fall(strand, last) + account_noise(strand, last);
     float gained = kinetic + linear + constant,
@@ -145,8 +131,8 @@ float account_close(inout Account account, Strand strand, int last)
         gained = kinetic + share * linear + constant;
         over = clamp(gained - (fall + ALLOWED * kinetic), 0.0, kinetic);
         kept = kinetic > 0.0 ? root_of_rest(over / kinetic) : 1.0;
-        gained += account_slow(account, strand, last, share, kept) -
-                  mix(account.stored_before, account.stored, share) - over;
+        account_slow(account, strand, last, share, kept);
+        gained -= over;
         gained += kept * kept * (per_square * account.squares - kinetic);
 #if SLOWS_AGAIN
         for (int i = 0; i < MOST_SLOWED && per_square * account.squares > 1.5 * kinetic + fall;

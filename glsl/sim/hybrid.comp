@@ -52,11 +52,8 @@ void pull_root(inout Constraint constraint, Strand strand, vec3 move)
     }
 }
 
-void main()
+void step_strand(int s)
 {
-    int s = first_strand();
-    if (s >= int(step_params.strand_count)) return;
-    keep_open(s);
     Strand strand = strand_open(s, hybrid_params.spring);
     Middle middle = middle_open(strand);
     vec3 root_off = pull_tip(strand, middle);
@@ -64,3 +61,4 @@ void main()
     pull_root(constraint, strand, limit_move(-root_off));
     constrain_finish(constraint, strand, middle.gained);
 }
+#include "sim/each_strand.glsl"

@@ -27,7 +27,7 @@ vec3 kept_aim[ENTRIES];
 vec4 kept_velocity[ENTRIES];
 
 // `address` is the address of particle j.
-void keep_open(int strand) {}
+void keep_open() {}
 void keep(int j, vec4 a) { kept[j - FIRST_KEPT] = a; }
 void keep_beside(int j, float b) { kept_beside[j - FIRST_KEPT] = b; }
 void keep_aim(int address, int j, vec3 a) { kept_aim[j - FIRST_KEPT] = a; }
@@ -38,19 +38,16 @@ vec3 recall_aim(int address, int j) { return kept_aim[j - FIRST_KEPT]; }
 vec4 recall_velocity(int address, int j) { return kept_velocity[j - FIRST_KEPT]; }
 #else
 #define LAST int(step_params.vertex_count - 1u)
-layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; };
+#include "sim/scratch.glsl"
 int keep_base;
 
-void keep_open(int strand)
-{
-    keep_base = particle_address(strand, 0, 2 * int(step_params.vertex_count));
-}
+void keep_open() { keep_base = scratch_base(2); }
 void keep(int j, vec4 a) { scratch[keep_base + 2 * j * STRAND_TILE] = a; }
 void keep_beside(int j, float b) { scratch[keep_base + (2 * j + 1) * STRAND_TILE].x = b; }
 void keep_aim(int address, int j, vec3 a) { positions[address] = vec4(a, 1.0); }
 void keep_velocity(int address, int j, vec4 v) { velocities[address] = v; }
-vec4 recall(int j) { return scratch[keep_base + 2 * j * STRAND_TILE]; }
-float recall_beside(int j) { return scratch[keep_base + (2 * j + 1) * STRAND_TILE].x; }
-vec3 recall_aim(int address, int j) { return positions[address].xyz; }
-vec4 recall_velocity(int address, int j) { return velocities[address]; }
+vec4 recall(int j) { return scratch_at(keep_base + 2 * j * STRAND_TILE); }
+float recall_beside(int j) { return scratch_at(keep_base + (2 * j + 1) * STRAND_TILE).x; }
+vec3 recall_aim(int address, int j) { return position_before(address).xyz; }
+vec4 recall_velocity(int address, int j) { return velocity_before(address); }
 #endif

@@ -35,7 +35,7 @@ typedef struct Accuracy {
     const Gpu *gpu;
     const BenchOptions *options;
     Table table;
-    MotionFolder folder;
+    MotionFolder folder, rods;
 } Accuracy;
 
 // The stated bounds: errors over the length, shares of energy. The first matching row applies.
@@ -54,6 +54,15 @@ static const struct {
     {"motions", "emulation", "a_horizontal_n16_c4", "error", 120, false, 0.03, NAN},
     {"pendulum", "split", "planar90_c4", "error", 60, false, 0.002, NAN},
     {"beam", "", "", "error", 0, true, 0.01, NAN},
+    {"physics", "", "cantilever 1, 16 segments", "tip error", 0, true, 0.0006, NAN},
+    {"physics", "", "cantilever 1, 32 segments", "tip error", 0, true, 0.00015, NAN},
+    {"physics", "", "cantilever 10, 16 segments", "tip error", 0, true, 0.004, NAN},
+    {"physics", "", "cantilever 10, 32 segments", "tip error", 0, true, 0.001, NAN},
+    {"physics", "", "cantilever 100, 16 segments", "tip error", 0, true, 0.009, NAN},
+    {"physics", "", "cantilever 100, 32 segments", "tip error", 0, true, 0.0025, NAN},
+    {"physics", "", "cantilever 1000, 16 segments", "tip error", 0, true, 0.022, NAN},
+    {"physics", "", "cantilever 1000, 32 segments", "tip error", 0, true, 0.008, NAN},
+    {"physics", "", "arc, k 1.60", "across", 0, true, 0.001, NAN},
     {"stretch", "", "", "as drawn", 0, false, 1e-5, NAN},
     {"energy", "", "", "rise", 0, false, 0.01, NAN},
     {"scale", "", "", "from metres", 0, true, 1e-4, NAN},
@@ -180,7 +189,7 @@ static Result run_method(Accuracy *accuracy, const Experiment *experiment, const
     int count = list_rates(accuracy->options, experiment->rates, rates);
     All all = {.what = ""};
     Setup setup;
-    for (int number = 0; experiments_set_up(experiment, &accuracy->folder, method,
+    for (int number = 0; experiments_set_up(experiment, &accuracy->folder, &accuracy->rods, method,
                                             accuracy->options->seconds, number, &setup);
          ++number)
         TRY(run_case(accuracy, experiment, method, &setup, &all, error));
@@ -427,7 +436,10 @@ Result accuracy_run(const BenchOptions *options, const Gpu *gpu, Error *error)
     THEN(result,
          trial_read_folder(&accuracy.folder,
                            options->reference ? options->reference : "tests/data/motion", error));
+    if (bench_options_part(options, "physics"))
+        THEN(result, trial_read_folder(&accuracy.rods, "tests/data/physics", error));
     THEN(result, run_parts(&accuracy, error));
     trial_destroy_folder(&accuracy.folder);
+    trial_destroy_folder(&accuracy.rods);
     return table_close(&accuracy.table, result, error);
 }

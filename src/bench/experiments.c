@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/experiments.h"
 #include "base/interrupt.h"
+#include "bench/physics.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 
 // --- Helpers.
 
-static void add_value(Run *run, const char *what, double value)
+void experiment_add(Run *run, const char *what, double value)
 {
     run->values[run->value_count].what = what;
     run->values[run->value_count++].value = value;
@@ -46,7 +47,7 @@ static Result motions_measure(Run *run, Error *error)
 {
     double off = NAN;
     TRY(trial_follow(&run->trial, run->setup->motion, &off, error));
-    add_value(run, "error", off);
+    experiment_add(run, "error", off);
     return RESULT_OK;
 }
 
@@ -125,7 +126,7 @@ static Result pendulum_measure(Run *run, Error *error)
         for (int k = 0; k < 3; ++k) sum += pow((double)end[k] - pendulum_at(run->setup, row, k), 2);
         ++counted;
     }
-    if (counted) add_value(run, "error", sqrt(sum / (double)counted) / LENGTH);
+    if (counted) experiment_add(run, "error", sqrt(sum / (double)counted) / LENGTH);
     return RESULT_OK;
 }
 
@@ -163,7 +164,7 @@ static Result rest_measure(Run *run, Error *error)
     const Setup *setup = run->setup;
     trial_advance(&run->trial, NULL, fmax(REST_S, REST_STEPS / run->trial.rate));
     TRY(trial_read(&run->trial, error));
-    add_value(run, "error", rms_distance(run->trial.points, setup->exact, setup->n));
+    experiment_add(run, "error", rms_distance(run->trial.points, setup->exact, setup->n));
     return RESULT_OK;
 }
 
@@ -208,8 +209,8 @@ static Result drift_measure(Run *run, Error *error)
         TRY(trial_read(trial, error));
         tremor = fmax(tremor, farthest(trial->points, before, n));
     }
-    add_value(run, "drift", rms_distance(trial->points, (const double(*)[3])settled, n));
-    add_value(run, "tremor", tremor);
+    experiment_add(run, "drift", rms_distance(trial->points, (const double(*)[3])settled, n));
+    experiment_add(run, "tremor", tremor);
     return RESULT_OK;
 }
 
@@ -217,31 +218,7 @@ static Result drift_measure(Run *run, Error *error)
 // distance at rest from the exact shape of the same chain, and the drop of the tip.
 //
 // Angles a_j of the segments j = 1 .. n of length l are below the horizontal; particles have mass
-// 1.
-//
-// chain: joint j bends by d_j = a_j - a_(j-1) (a_0 = 0) and balances the weight of everything
-// beyond it:
-//     K n^2 l sin(d_j) = sum over i >= j of g (x_i - x_(j-1)),
-// which is the exact minimum of the discrete rod's energy (glsl/sim/bend.glsl). Solved by
-// relaxation, because x depends on a.
-static void solve_joints(double stiffness, int n, double *angle)
-{
-    for (int j = 1; j <= n; ++j) angle[j] = 0;
-    for (int round = 0; round < 2000; ++round) {
-        double moment = 0, hanging = 0, turn[EXPERIMENT_POINTS] = {0};
-        for (int j = n; j >= 1; --j) {
-            hanging += 1;
-            moment += G * hanging * cos(angle[j]);
-            turn[j] = asin(fmin(1, moment / (stiffness * n * n)));
-        }
-        for (int j = 1; j <= n; ++j) {
-            double a = turn[j] + (j > 1 ? angle[j - 1] : 0);
-            angle[j] += 0.2 * (a - angle[j]);
-        }
-    }
-}
-
-// spring: each link is pulled towards the horizontal and balances the weight at its end:
+// 1. Each link is pulled towards the horizontal and balances the weight at its end:
 //     n b a_j = (n - j + 1) g cos(a_j),
 // the balance of forces across link j (glsl/sim/spring.comp). b is at most an eighth of the coil's
 // stiffness (the default of --spring-coil, 1e4/s2) times the length. Solved by Newton's method.
@@ -255,39 +232,29 @@ static void solve_links(double stiffness, int n, double *angle)
     }
 }
 
-// For small deflections, the drop of the tip of a continuous beam over its length: a cantilever
-// under its own weight q drops by q L^4/(8 E I) (Gere and Timoshenko, Mechanics of Materials). With
-// E I = K L^2 and q = n g/L that is n g/(8 K). Valid for stiff rods only; the links of spring do
-// not form a beam.
 static bool beam_set_up(Setup *setup)
 {
     static const double stiffnesses[] = {5, 50, 500};
-    bool chain = strcmp(setup->method->algo, "chain") == 0;
-    if (setup->number >= 6 || (!chain && strcmp(setup->method->algo, "spring") != 0)) return false;
-    const char *flag = chain ? "chain-bend" : "spring-angular";
+    if (setup->number >= 6) return false;
     double stiffness = stiffnesses[setup->number / 2], angle[EXPERIMENT_POINTS] = {0};
     int n = setup->number % 2 ? 31 : 15;
     setup->n = n + 1;
     trial_make_beam(setup->points, n + 1, LENGTH);
-    (chain ? solve_joints : solve_links)(stiffness, n, angle);
+    solve_links(stiffness, n, angle);
     for (int j = 1; j <= n; ++j) {
         setup->exact[j][0] = setup->exact[j - 1][0] + LENGTH / n * cos(angle[j]);
         setup->exact[j][1] = setup->exact[j - 1][1] - LENGTH / n * sin(angle[j]);
     }
-    if (chain && stiffness == 500) setup->beam_drop = n * G / (8 * stiffness);
-    snprintf(setup->scenario, sizeof setup->scenario, "%s %g, %d links", flag, stiffness, n);
-    snprintf(setup->settings, sizeof setup->settings, "--style 0.5%s --drag 5 --%s %g",
-             chain ? " --style-stiffness 0" : "", flag, stiffness);
+    snprintf(setup->scenario, sizeof setup->scenario, "spring-angular %g, %d links", stiffness, n);
+    snprintf(setup->settings, sizeof setup->settings,
+             "--style 0.5 --drag 5 --spring-angular %g", stiffness);
     return true;
 }
 
 static Result beam_measure(Run *run, Error *error)
 {
-    const Setup *setup = run->setup;
     TRY(rest_measure(run, error));
-    double drop = -(double)run->trial.points[setup->n - 1][1] / LENGTH;
-    add_value(run, "drop", drop);
-    if (!isnan(setup->beam_drop)) add_value(run, "drop over beam's", drop / setup->beam_drop);
+    experiment_add(run, "drop", -(double)run->trial.points[run->setup->n - 1][1] / LENGTH);
     return RESULT_OK;
 }
 
@@ -324,7 +291,7 @@ static Result stretch_measure(Run *run, Error *error)
             if (!((off - rounding) / sqrt(rest) <= most)) most = (off - rounding) / sqrt(rest);
         }
     }
-    add_value(run, run->trial.params.stretch_drawn ? "as simulated" : "as drawn", most);
+    experiment_add(run, run->trial.params.stretch_drawn ? "as simulated" : "as drawn", most);
     return RESULT_OK;
 }
 
@@ -365,18 +332,24 @@ static Result read_masses(Trial *trial, int n, double (*points)[3], Error *error
 }
 
 // The energy of the motion from a to b in dt, minus the energy of the start, over the energy that
-// falling can release. Particles from index `from` on have mass.
+// falling can release. Particles from index `from` on have the mass 1, the tip `tip`.
 static double energy(const double (*start)[3], const double (*a)[3], const double (*b)[3], int from,
-                     int n, double dt)
+                     int n, double dt, double tip)
 {
     double sum = 0, budget = 0;
     for (int j = from; j < n; ++j) {
-        double square = 0;
+        double square = 0, mass = j == n - 1 ? tip : 1;
         for (int k = 0; k < 3; ++k) square += pow((b[j][k] - a[j][k]) / dt, 2);
-        sum += square / 2 + G * ((a[j][1] + b[j][1]) / 2 - start[j][1]);
-        budget += G * (start[j][1] - start[0][1] + LENGTH * j / (n - 1));
+        sum += mass * (square / 2 + G * ((a[j][1] + b[j][1]) / 2 - start[j][1]));
+        budget += mass * G * (start[j][1] - start[0][1] + LENGTH * j / (n - 1));
     }
     return sum / budget;
+}
+
+// The tip of a rod has half a segment's mass.
+static double tip_mass(const Run *run)
+{
+    return trial_has(run->method, "youngs_modulus") ? 0.5 : 1;
 }
 
 // The energy with the solver's own velocities: the energy of a motion over h seconds that ends at
@@ -388,7 +361,8 @@ static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
     const Trial *trial = &run->trial;
     const GpuBuffer *velocities = trial_buffer(trial, 0, SOLVER_VELOCITIES);
     bool at_end =
-        strcmp(run->method->algo, "hybrid") == 0 || strcmp(run->method->algo, "emulation") == 0;
+        strcmp(run->method->algo, "hybrid") == 0 || strcmp(run->method->algo, "rod") == 0 ||
+        strcmp(run->method->algo, "emulation") == 0;
     double a[EXPERIMENT_POINTS][3] = {{0}}, b[EXPERIMENT_POINTS][3] = {{0}};
     double h = trial->step.dt / solver_substeps(&trial->solver, &trial->step);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -402,7 +376,8 @@ static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
             a[j][k] = b[j][k] - h * (double)v[k];
         }
     }
-    return energy(start, (const double(*)[3])a, (const double(*)[3])b, 1, run->setup->n, h);
+    return energy(start, (const double(*)[3])a, (const double(*)[3])b, 1, run->setup->n, h,
+                  tip_mass(run));
 }
 
 static void raise_most(double *most, double e)
@@ -435,15 +410,15 @@ static Result energy_measure(Run *run, Error *error)
             const double(*from)[3] = (const double(*)[3])start + at;
             const double(*to)[3] = (const double(*)[3])now + at;
             double e = energy(from, (const double(*)[3])before + at, to, tips ? n - 1 : 1, n,
-                              trial->step.dt);
+                              trial->step.dt, tip_mass(run));
             raise_most(&drawn, e);
             change = s ? fmax(change, e) : e;
             if (has_own) raise_most(&own, own_energy(run, s, from, to));
         }
     }
-    if (has_own) add_value(run, "rise as drawn", drawn);
-    add_value(run, "rise", has_own ? own : drawn);
-    if (strstr(setup->scenario, "drag 0, loose")) add_value(run, "change", change);
+    if (has_own) experiment_add(run, "rise as drawn", drawn);
+    experiment_add(run, "rise", has_own ? own : drawn);
+    if (strstr(setup->scenario, "drag 0, loose")) experiment_add(run, "change", change);
     return RESULT_OK;
 }
 
@@ -481,7 +456,7 @@ static Result rate_measure(Run *run, Error *error)
                 sum += pow((double)run->trial.points[j][k] - (double)finest[f][j][k], 2);
     }
     if (!run->finest)
-        add_value(run, "from finest", sqrt(sum / (RATE_FRAMES * (motion->n - 1))) / motion->length);
+        experiment_add(run, "from finest", sqrt(sum / (RATE_FRAMES * (motion->n - 1))) / motion->length);
     return RESULT_OK;
 }
 
@@ -509,7 +484,7 @@ static Result scale_measure(Run *run, Error *error)
         if (run->setup->units == 1) metres[run->rate][i / 3][i % 3] = x;
         if (i >= 3) sum += pow((double)metres[run->rate][i / 3][i % 3] - (double)x, 2);
     }
-    if (run->setup->units != 1) add_value(run, "from metres", sqrt(sum / (SCALE_N - 1)) / LENGTH);
+    if (run->setup->units != 1) experiment_add(run, "from metres", sqrt(sum / (SCALE_N - 1)) / LENGTH);
     return RESULT_OK;
 }
 
@@ -518,11 +493,18 @@ static Result scale_measure(Run *run, Error *error)
 #define LOOSE "--style 0"
 #define DRAWN "--style 0 --stretch-drawn true"
 const Experiment EXPERIMENTS[] = {
-    {"motions", {60, 120, 240}, NULL, LOOSE, ORDER, FOLD_MEAN, motions_set_up, motions_measure},
-    {"pendulum", {60, 120, 240}, NULL, LOOSE, ORDER, 0, pendulum_set_up, pendulum_measure},
+    {"motions", {60, 120, 240}, NULL, LOOSE, ORDER, FOLD_MEAN, motions_set_up,
+     motions_measure},
+    {"pendulum", {60, 120, 240}, NULL, LOOSE, ORDER, 0, pendulum_set_up,
+     pendulum_measure},
     {"static", {60}, "style_stiffness", "", 0, 0, static_set_up, rest_measure},
+    {"physics", {60}, "youngs_modulus", "", 0, 0, physics_cantilever_set_up,
+     physics_cantilever_measure},
+    {"physics", {60}, "youngs_modulus", "", 0, 0, physics_curl_set_up, physics_curl_measure},
+    {"physics", {60, 120, 240, 480}, "youngs_modulus", "", ORDER, 0, physics_motion_set_up,
+     motions_measure},
     {"drift", {60}, NULL, "", 0, 0, drift_set_up, drift_measure},
-    {"beam", {30, 240}, NULL, "", 0, 0, beam_set_up, beam_measure},
+    {"beam", {30, 240}, "spring_angular", "", 0, 0, beam_set_up, beam_measure},
     {"stretch", {60, 240}, NULL, LOOSE, 0, FOLD_MOST, stretch_set_up, stretch_measure},
     {"stretch", {60, 240}, "stretch_drawn", DRAWN, 0, FOLD_MOST, stretch_set_up, stretch_measure},
     {"energy", {30, 60, 120, 240}, NULL, "", 0, 0, energy_set_up, energy_measure},
@@ -532,12 +514,12 @@ const Experiment EXPERIMENTS[] = {
 const int EXPERIMENT_COUNT = sizeof EXPERIMENTS / sizeof *EXPERIMENTS;
 
 bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder,
-                        const Method *method, double seconds, int number, Setup *setup)
+                        const MotionFolder *rods, const Method *method, double seconds, int number, Setup *setup)
 {
     if (experiment->param && !trial_has(method, experiment->param)) return false;
-    *setup = (Setup){.strand_count = 1, .drag = NAN, .units = 1, .beam_drop = NAN};
+    *setup = (Setup){.strand_count = 1, .drag = NAN, .units = 1};
     setup->seconds = seconds;
-    setup->folder = folder, setup->method = method, setup->number = number;
+    setup->folder = folder, setup->rods = rods, setup->method = method, setup->number = number;
     snprintf(setup->settings, sizeof setup->settings, "%s", experiment->settings);
     return experiment->set_up(setup);
 }

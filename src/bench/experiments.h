@@ -14,7 +14,7 @@ enum {
 
 // A case of an experiment: how strands start, and what moves them.
 typedef struct Setup {
-    const MotionFolder *folder;
+    const MotionFolder *folder, *rods; // motions of strings, and of elastic rods
     const Method *method;
     int number;
     char scenario[80];                   // description, as in the rows
@@ -28,8 +28,8 @@ typedef struct Setup {
     const Motion *motion; // replaces start, head motion and forces above; NULL: gravity only
     bool in_all;          // counts in the row of all cases
     double seconds;       // of long runs
+    double length;                      // m, of strands whose length is not that of the others
     double exact[EXPERIMENT_POINTS][3]; // the exact rest positions of the particles, m
-    double beam_drop; // of a continuous beam's tip, relative to the length; NaN: none
     const Csv *csv;   // the tip's motion: columns from `column` on, x, y and,
     size_t column;    // with 3 axes, z
     int axes;
@@ -70,9 +70,12 @@ typedef struct Experiment {
 extern const Experiment EXPERIMENTS[];
 extern const int EXPERIMENT_COUNT;
 
+// Adds a value to the run.
+void experiment_add(Run *run, const char *what, double value);
+
 // Fills case `number` (from 0 on) of an experiment; false: the method has no more cases.
 bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder,
-                        const Method *method, double seconds, int number, Setup *setup);
+                        const MotionFolder *rods, const Method *method, double seconds, int number, Setup *setup);
 
 // Simulates and measures run->method in run->setup. RESULT_INTERRUPTED after an interrupt.
 Result experiments_run(const Experiment *experiment, Run *run, const Gpu *gpu, double rate,

@@ -103,8 +103,9 @@ static Result try_solver(const Gpu *gpu, const SolverType *type, const char *var
                                   .volume = shape->volume,
                                   .style_stiffness = 200,
                                   .clamped = style < 1 ? 1 : 2,
-                                  // The style's springs with bending and without.
-                                  .chain_bend = style < 1 ? 10 : 0};
+                                  .youngs_modulus = style < 1 ? 3.5f : 0,
+                                  .hair_radius = 35,
+                                  .hair_density = 1300};
     return try_hair(gpu, &params, &recipe, NULL, error);
 }
 

@@ -67,8 +67,16 @@ static double turned_springs(const StressCase *stress, const SectionParams *para
         double passes = (double)params->tressfx_local_constraints_iterations / 2;
         return square * fmax(passes, 1) * 4e4 * odds;
     }
-    double springs = square * (double)params->style_stiffness * odds;
-    return springs + (is(stress, "chain") ? bend * (double)params->chain_bend : 0);
+    return square * (double)params->style_stiffness * odds;
+}
+
+// beta over the mass of a particle, m^2/s^2 (glsl/sim/rod_joint.glsl).
+static double joint_stiffness(const StressCase *stress, const SectionParams *params)
+{
+    double radius = (double)params->hair_radius * 1e-6, modulus = (double)params->youngs_modulus,
+           l = stress->value[STRESS_length] / (stress->value[STRESS_n] - 1);
+    if (!is(stress, "rod")) return 0;
+    return modulus * 1e9 * radius * radius / (4 * (double)params->hair_density * l * l);
 }
 
 // Whether the parameters are in the range in which `tressfx steady` gains no energy according to
@@ -186,8 +194,7 @@ StressBound stress_bound_create(const StressCase *stress, const SectionParams *p
                 : is(stress, "dftl") ? 2
                                      : 1,
         .carries = is(stress, "tressfx") || (params->clamped > 1 && stress->value[STRESS_n] > 2),
-        .bends = 16 * (is(stress, "chain") ? (double)params->chain_bend : 0) * odds_of(params) *
-                 (stress->value[STRESS_n] - 1) * stress->value[STRESS_length],
+        .bends = 16 * joint_stiffness(stress, params),
         .small_steps = strcmp(stress->variant, "xpbd") == 0       ? params->rope_iterations
                        : strcmp(stress->variant, "explicit") == 0 ? STRESS_MOST_SMALL_STEPS
                                                                   : 1,

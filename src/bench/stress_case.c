@@ -43,7 +43,9 @@ static const struct {
     {"style", 0, 1, STYLE, 0.5},
     {"rest", REST_GROOM, REST_HANGING, WHOLE, 1},
     {"style_stiffness", 1, 1e9, ZERO, 0.3}, // softer springs have no effect
-    {"chain_bend", 1, 1e6, ZERO, 0.4},
+    {"youngs_modulus", 1e-3, 100, ZERO, 0.2},
+    {"hair_radius", 5, 500, LOG, 1},
+    {"bend_damping", 0.01, 100, ZERO, 0.3},
     {"rope_iterations", 1, 100, WHOLE_LOG, 0.3}, // each iteration takes the same time
     {"rope_compliance", 1e-9, 1e6, ZERO, 0.3},   // small values are stiff
     {"stretch_drawn", 0, 1, WHOLE, 1},

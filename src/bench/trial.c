@@ -74,6 +74,7 @@ Result trial_params(SectionParams *params, const Method *method, const char *bef
     *params = (SectionParams){0};
     TRY(params_create_section(params, error));
     TRY(scene_apply_presets(&(Presets){.look = "plain"}, SCOPE_SECTION, params, error));
+    if (strcmp(method->algo, "rod") == 0) TRY(set_param(params, "style", "0", error));
     TRY(apply_text(params, before, error));
     return trial_apply(params, method, error);
 }

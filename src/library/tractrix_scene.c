@@ -65,7 +65,7 @@ static Result settle(Scene *scene, const TractrixScene *from, Error *error)
         body->given_mesh = from->meshes[b].mesh.vertex_count ? &from->meshes[b] : NULL;
         if (body->given_mesh) TRY(params_parse(params_find("mesh"), &body->params, ARRAY, error));
     }
-    scene_settle_colors(scene);
+    scene_settle(scene);
     TRY(scene_choose_turn(scene, error));
     scene_set_lights(scene);
     return RESULT_OK;

@@ -92,7 +92,7 @@ CONDITION(shows_color, section->transmission.automatic && section->melanin.autom
 CONDITION(shows_transmission, section->melanin.automatic)
 CONDITION(scatters, scene->run.shadow == SHADOW_DOM)
 CONDITION(has_grid, scene->run.scatter != SCATTER_NONE)
-CONDITION(has_style, section->style > 0)
+CONDITION(has_style, section->style > 0 || section_is_elastic(section))
 CONDITION(is_smooth, section->smooth > 1)
 CONDITION(moves, strcmp(section->algo, "none") != 0)
 

@@ -168,7 +168,8 @@ static void add_rest(Outline *outline, const Strands *strands, const SectionPara
 {
     // With the default variant, a groom at rest on a still head keeps its shape; other variants may
     // not.
-    bool rests = times == 1 && params->rest == REST_GROOM && params->style > 0 && !*params->variant;
+    bool rests = times == 1 && params->rest == REST_GROOM && !*params->variant &&
+                 (params->style > 0 || section_is_elastic(params));
     vec3 pull;
     for (int k = 0; k < 3; ++k)
         pull[k] = (rests ? 0 : moment->gravity[k]) + params->drag * moment->wind[k];

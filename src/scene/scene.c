@@ -188,9 +188,24 @@ static void settle_section(Section *section)
     if (refused || origin_of(section, "opacity") > opacity) params->file_opacity = false;
 }
 
-void scene_settle_colors(Scene *scene)
+// Elastic strands keep their shape without springs.
+static void settle_style(Section *section)
 {
-    for (uint32_t i = 0; i < scene->section_count; ++i) settle_section(&scene->sections[i]);
+    if (section_is_elastic(&section->params) && origin_of(section, "style") == ORIGIN_DEFAULT)
+        section->params.style = 0;
+}
+
+bool section_is_elastic(const SectionParams *params)
+{
+    return strcmp(params->algo, "rod") == 0 && strcmp(params->variant, "particles") != 0;
+}
+
+void scene_settle(Scene *scene)
+{
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        settle_section(&scene->sections[i]);
+        settle_style(&scene->sections[i]);
+    }
 }
 
 // --- Presets.

@@ -179,12 +179,18 @@ bool scene_has_default(const Scene *scene, const char *name);
 // the time step stays that of other sequences. RESULT_FAILED when memory is short.
 Result scene_choose_turn(Scene *scene, Error *error);
 
-// Resolves conflicts between colours: the setting with the higher Origin wins. A color replaces
-// transmission and melanin; all three replace file_colors; an opacity, or file_colors that are off,
-// replace file_opacity. Call once, after the last parameter is set.
-void scene_settle_colors(Scene *scene);
+// Whether strands hold their shape by their own elasticity (the solver rod, except for its variant
+// particles), so that a style of 0 keeps the groom.
+bool section_is_elastic(const SectionParams *params);
 
-// Like scene_read, but without scene_settle_colors and scene_check, so that flags can still
+// Resolves what depends on several parameters. Call once, after the last parameter is set.
+// - Conflicts between colours: the setting with the higher Origin wins. A color replaces
+//   transmission and melanin; all three replace file_colors; an opacity, or file_colors that are
+//   off, replace file_opacity.
+// - The style of elastic sections that neither file nor flag sets becomes 0.
+void scene_settle(Scene *scene);
+
+// Like scene_read, but without scene_settle and scene_check, so that flags can still
 // override values and make a combination valid.
 Result scene_read_unchecked(Scene *scene, const char *path, const SceneOverrides *overrides,
                             Error *error);

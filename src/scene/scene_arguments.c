@@ -109,7 +109,7 @@ Result scene_from_arguments(Scene *scene, int argc, char **argv, Error *error)
         THEN(result, scene_open(scene, found.files, found.file_count, &found.overrides, error));
     free(found.files);
     if (run) THEN(result, apply_flags(scene, walk, error));
-    scene_settle_colors(scene);
+    scene_settle(scene);
     if (run) THEN(result, scene_choose_turn(scene, error));
     if (run) THEN(result, choose_still(scene, error));
     if (run && result == RESULT_OK) scene_set_lights(scene);

@@ -420,7 +420,7 @@ Result scene_read(Scene *scene, const char *path, Error *error)
 {
     const SceneOverrides none = {0};
     TRY(scene_read_unchecked(scene, path, &none, error));
-    scene_settle_colors(scene);
+    scene_settle(scene);
     scene_set_lights(scene);
     Result result = scene_check(scene, error);
     if (result != RESULT_USAGE && result != RESULT_BAD_INPUT) return result;

@@ -7,7 +7,8 @@
 bool along_varies(const SolverRecipe *recipe, const SectionParams *params)
 {
     return recipe->along && (params->style_along.count || params->style_stiffness_along.count ||
-                             params->drag_along.count || params->gravity_share_along.count);
+                             params->drag_along.count || params->gravity_share_along.count ||
+                             params->youngs_modulus_along.count || params->hair_radius_along.count);
 }
 
 Result along_create(Along *along, const SolverRecipe *recipe, const Hair *hair,
@@ -43,13 +44,14 @@ void along_destroy(Along *along)
     *along = (Along){0};
 }
 
-// The section's parameters at the place `share` along the strand.
-static SectionParams params_at(const SectionParams *params, double share)
+SectionParams along_params_at(const SectionParams *params, double share)
 {
     SectionParams at = *params;
     at.style = profile_at(params->style, &params->style_along, share);
     at.style_stiffness = profile_at(params->style_stiffness, &params->style_stiffness_along, share);
     at.drag = profile_at(params->drag, &params->drag_along, share);
+    at.youngs_modulus = profile_at(params->youngs_modulus, &params->youngs_modulus_along, share);
+    at.hair_radius = profile_at(params->hair_radius, &params->hair_radius_along, share);
     at.gravity_share = profile_at(params->gravity_share, &params->gravity_share_along, share);
     return at;
 }
@@ -58,7 +60,7 @@ static void fill_vertex(Along *along, const SolverStep *step, const void *mean, 
                         float own[4], float forces[4])
 {
     const SolverRecipe *recipe = along->recipe;
-    const SectionParams at = params_at(along->params, share);
+    const SectionParams at = along_params_at(along->params, share);
     StepParams uniforms = step_uniforms(step, &at);
     memset(along->block, 0, recipe->params_size);
     if (recipe->fill) recipe->fill(along->block, &uniforms, step, &at);

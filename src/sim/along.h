@@ -32,5 +32,8 @@ void along_destroy(Along *along);
 // recipe's block, made from the mean of each profile.
 void along_fill(Along *along, const SolverStep *step, const void *mean);
 
+// The section's parameters at the place `share` (0 .. 1) along the strand.
+SectionParams along_params_at(const SectionParams *params, double share);
+
 // Binds the table of batch `batch` at BIND_ALONG. Does nothing if there is no table.
 void along_bind(const Along *along, uint32_t batch);

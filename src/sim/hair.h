@@ -33,7 +33,7 @@ typedef struct HairBatch {
 
 // The most vec4 a particle that a solver keeps in one buffer (SolverRecipe.scratch): no batch has
 // more particles than such a buffer can hold.
-enum { HAIR_MOST_SCRATCH = 3 };
+enum { HAIR_MOST_SCRATCH = 7 };
 
 // Number of strands including the copies in the last tile. Buffers have room for that many.
 static inline uint32_t hair_slots(const HairBatch *batch)

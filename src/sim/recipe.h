@@ -51,6 +51,20 @@ typedef enum SolverStateKind {
     SOLVER_SEGMENTS,
 } SolverStateKind;
 
+// The strands of a batch, for which SolverRecipe.balance finds the shape without load. Texels are
+// addressed by hair_address; those before the solver's root stay 0.
+typedef struct RestBatch {
+    const HairBatch *hair;
+    const SectionParams *params;
+    uint32_t lead;           // vertices before the solver's root
+    const float *gravity;    // m/s^2, in the head's frame: the groom is at rest in it
+    const float (*rest)[4];  // as HairBatch.rest
+    float (*natural)[4];     // written: direction, unloaded twist (rod_joint.glsl)
+    float (*held)[4];        // written: the force that holds each particle (rod.comp)
+    float (*state)[4];       // written: the root's texel of the state
+    double weight, supports; // added: weight of the strands, and of it what is held
+} RestBatch;
+
 typedef struct SolverRecipe {
     const char *label;  // the timer's span: "sim_<name>"
     const char *shader; // glsl file
@@ -78,6 +92,9 @@ typedef struct SolverRecipe {
     // filled with the parameters at that vertex (`there`), `mean` with the means of the profiles.
     // NULL: the solver uses the means.
     void (*along)(float texel[4], const void *block, const void *mean, const SectionParams *there);
+    // For solvers that find a shape whose own elasticity carries the weight of the groom, instead of
+    // the difference of gravity that the others apply (solver.c). RESULT_FAILED when memory is short.
+    Result (*balance)(RestBatch *batch, Error *error);
     // Number of equal sub-steps that a step needs for the longest strand; NULL: 1.
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
     // Number of dispatches (StepParams.phase) of a sub-step if strands are not in registers; NULL:

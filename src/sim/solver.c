@@ -2,6 +2,7 @@
 #include "sim/solver.h"
 #include "base/suggest.h"
 #include "gpu/gpu_uniforms.h"
+#include "scene/scene.h"
 #include "sim/along.h"
 #include "sim/collision.h"
 #include "sim/pose.h"
@@ -85,12 +86,25 @@ static int find_variant(const SolverType *type, const char *variant)
     return 0;
 }
 
+static bool is_published(const SectionParams *params)
+{
+    const char *published = known_type(params)->published;
+    return published && strcmp(published, params->variant) == 0;
+}
+
+bool solver_keeps_groom(const SectionParams *params)
+{
+    bool holds = params->style > 0 || section_is_elastic(params);
+    return params->rest == REST_GROOM && holds && !is_published(params);
+}
+
 typedef struct SolverState SolverState;
 
 typedef struct SolverBatch {
     GpuBuffer state;   // a vec4 per particle: velocities or segments, see SolverStateKind
     GpuBuffer tips;    // only for SOLVER_SEGMENTS: two vec4 per strand
     GpuBuffer scratch; // SolverRecipe.scratch
+    GpuBuffer natural, held; // SolverRecipe.balance
 } SolverBatch;
 
 struct SolverState {
@@ -104,6 +118,8 @@ struct SolverState {
     SolverBatch *batches;    // one for each batch of the hair
     float rest_gravity[3];   // m/s^2, in the head's frame: the gravity under which the groom is at
                              // rest; 0 if it is not balanced
+    bool keeps;              // the groom is balanced by SolverRecipe.balance
+    double weight, supports; // of the groom, and of it what its own elasticity does not carry
     bool varies;             // parameters differ along the strand
     const GpuBuffer *frames; // of bound strands, or NULL
     // For animated parameters: the strength of the style at time 0, at which the groom was
@@ -133,6 +149,8 @@ static void destroy(SolverState *state)
         gpu_buffer_destroy(&state->batches[i].state);
         gpu_buffer_destroy(&state->batches[i].tips);
         gpu_buffer_destroy(&state->batches[i].scratch);
+        gpu_buffer_destroy(&state->batches[i].natural);
+        gpu_buffer_destroy(&state->batches[i].held);
     }
     free(state->batches);
     free(state->own);
@@ -164,6 +182,7 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
     const StepProgramsOptions options = {
         .shader = recipe->shader,
         .shape = recipe->shape,
+        .most_vertices = recipe->most_vertices,
         .lead = recipe->carried < 2 && state->params->clamped > 1,
         .sheltered = setup->sheltered,
         .varies = has_particles(state) && state->varies,
@@ -231,6 +250,39 @@ static Result create_segments(SolverState *state, uint32_t i, const SolverSetup 
     return result;
 }
 
+// Finds the groom's shape without load, and starts the state with the energy of its load.
+static Result balance_batch(SolverState *state, uint32_t i, const GpuLimits *limits, Error *error)
+{
+    const HairBatch *hair = &state->hair->batches[i];
+    SolverBatch *batch = &state->batches[i];
+    int64_t size = hair->rest.size;
+    Float4 *rest = gpu_buffer_read(&hair->rest), *natural = calloc(1, (size_t)size),
+           *held = calloc(1, (size_t)size), *start = calloc(1, (size_t)size);
+    RestBatch of = {.hair = hair,
+                    .params = state->params,
+                    .lead = state->programs.leads[i],
+                    .gravity = state->rest_gravity,
+                    .rest = (const float(*)[4])rest,
+                    .natural = natural,
+                    .held = held,
+                    .state = start};
+    Result result = RESULT_OK;
+    if (!rest || !natural || !held || !start)
+        result = error_set(error, RESULT_FAILED, "no memory for the groom's balance");
+    THEN(result, state->recipe->balance(&of, error));
+    THEN(result, gpu_buffer_create(&batch->natural, limits, "natural shapes", size, natural,
+                                   GL_RGBA32F, error));
+    THEN(result, gpu_buffer_create(&batch->held, limits, "forces that hold the groom", size, held,
+                                   GL_RGBA32F, error));
+    if (result == RESULT_OK) gpu_buffer_write(&batch->state, 0, start, size);
+    state->weight += of.weight, state->supports += of.supports;
+    free(rest);
+    free(natural);
+    free(held);
+    free(start);
+    return result;
+}
+
 static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *setup, Error *error)
 {
     const GpuLimits *limits = &setup->gpu->limits;
@@ -242,26 +294,20 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
     TRY(gpu_buffer_create(&batch->state, limits, "velocities", hair->rest.size, NULL, GL_RGBA32F,
                           error));
     gpu_buffer_clear(&batch->state, 0);
+    if (state->recipe->balance && state->keeps) TRY(balance_batch(state, i, limits, error));
     if (!scratch || state->programs.in_registers) return RESULT_OK;
+    uint64_t lanes = step_programs_lanes(&state->programs, hair->strand_count),
+             tiles = (lanes + STRAND_TILE - 1) / STRAND_TILE;
     return gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
-                             hair->rest.size * scratch, NULL, 0, error);
-}
-
-static bool is_published(const SectionParams *params)
-{
-    const char *published = known_type(params)->published;
-    return published && strcmp(published, params->variant) == 0;
-}
-
-bool solver_keeps_groom(const SectionParams *params)
-{
-    return params->rest == REST_GROOM && params->style > 0 && !is_published(params);
+                             (int64_t)(tiles * STRAND_TILE * hair->vertex_count * scratch *
+                                       sizeof(Float4)),
+                             NULL, GL_RGBA32F, error);
 }
 
 static void set_rest_gravity(SolverState *state, const SolverSetup *setup)
 {
     versor inverse = {0, 0, 0, 1};
-    if (!(setup->params->style > 0) || is_published(setup->params)) return;
+    if (!solver_keeps_groom(setup->params)) return;
     if (setup->head) glm_quat_conjugate((float *)setup->head->rotation, inverse);
     glm_quat_rotatev(inverse, (float *)setup->rest_gravity, state->rest_gravity);
 }
@@ -324,6 +370,7 @@ Result solver_create(Solver *solver, const SolverSetup *setup, Error *error)
     state->timer = setup->timer;
     state->frames = setup->frames;
     set_rest_gravity(state, setup);
+    state->keeps = recipe && recipe->balance && solver_keeps_groom(state->params);
     state->varies = recipe && !is_published(state->params) && along_varies(recipe, state->params);
     state->changes = setup->start != NULL;
     if (setup->start) state->held_by = style_strength(setup->start);
@@ -413,10 +460,13 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
     gpu_buffer_bind_texture(&batch->state, BIND_STATE);
     along_bind(&state->along, i);
     bind_frames(state, i);
+    if (batch->natural.buffer) gpu_buffer_bind_texture(&batch->natural, BIND_NATURAL);
+    if (batch->held.buffer) gpu_buffer_bind_texture(&batch->held, BIND_HELD);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
     gpu_buffer_bind_storage(&batch->state, BIND_STATE_OUT);
     if (batch->tips.buffer) gpu_buffer_bind_storage(&batch->tips, BIND_TIPS);
     if (batch->scratch.buffer) gpu_buffer_bind_storage(&batch->scratch, BIND_SCRATCH);
+    if (batch->scratch.buffer) gpu_buffer_bind_texture(&batch->scratch, BIND_SCRATCH_BEFORE);
     step_programs_dispatch(&state->programs, i, hair->strand_count);
 }
 
@@ -428,10 +478,11 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
 static void hold_groom(const SolverState *state, StepParams *uniforms)
 {
     vec3 held = {0};
-    if (has_particles(state) && state->frames)
+    bool uniform = has_particles(state) && !state->keeps;
+    if (uniform && state->frames)
         glm_vec3_scale((float *)state->rest_gravity,
                        held_share(state) * state->params->gravity_share, uniforms->held);
-    else if (has_particles(state))
+    else if (uniform)
         glm_quat_rotatev(uniforms->head_rotation, (float *)state->rest_gravity, held);
     if (state->changes) glm_vec3_scale(held, held_share(state), held);
     glm_vec3_sub(uniforms->gravity, held, uniforms->gravity);

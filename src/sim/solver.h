@@ -47,6 +47,7 @@ struct SolverType {
     X(SPLIT)                                                                                       \
     X(EMULATION)                                                                                   \
     X(HYBRID)                                                                                      \
+    X(ROD)                                                                                         \
     X(CHAIN)                                                                                       \
     X(TRESSFX)                                                                                     \
     X(SPRING)                                                                                      \

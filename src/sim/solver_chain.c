@@ -7,15 +7,8 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
                  const SectionParams *params)
 {
     (void)step;
-    *(ChainParams *)block = (ChainParams){
-        .spring = step_style_spring(uniforms, (double)uniforms->dt, params),
-        .bend = params->chain_bend * step_style_odds(params),
-    };
-}
-
-static void define(ShaderDefine *defines, const SectionParams *params)
-{
-    defines[0] = (ShaderDefine){"BENDS", params->style > 0 && params->chain_bend > 0};
+    *(ChainParams *)block =
+        (ChainParams){.spring = step_style_spring(uniforms, (double)uniforms->dt, params)};
 }
 
 static const SolverRecipe RECIPE = {
@@ -26,16 +19,15 @@ static const SolverRecipe RECIPE = {
     .most_vertices = 7000, // 9 sweeps fit the 65535 iterations of CPU drivers
     .params_size = sizeof(ChainParams),
     .fill = fill,
-    .define = define,
     .along = step_spring_along,
 };
 
 const SolverType SOLVER_CHAIN = {
     .name = "chain",
     .summary = "every particle is simulated, a direct solve keeps the lengths; second order in the "
-               "step; curls keep their form by --chain-bend",
+               "step",
     .lengths = "exact",
-    .style = "position springs, bending: --style, --style-stiffness, --chain-bend",
+    .style = "position springs, --style, --style-stiffness",
     .most_stability = 3.2f,
     .recipes = {&RECIPE},
 };

@@ -143,6 +143,18 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 
+// CPU drivers end the loops of a lane after 65,535 turns, which most_vertices allows for one strand.
+static uint32_t strands_in_memory(const StepSizes *sizes, const Hair *hair,
+                                  const StepProgramsOptions *options)
+{
+    uint32_t most = sizes->strands_in_memory;
+    for (uint32_t i = 0; i < hair->batch_count && options->most_vertices; ++i) {
+        uint32_t fit = options->most_vertices / hair->batches[i].vertex_count;
+        if (fit < most) most = fit;
+    }
+    return most ? most : 1;
+}
+
 Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *hair,
                             const StepProgramsOptions *options, Error *error)
 {
@@ -153,7 +165,8 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
         .leads = calloc(hair->batch_count + 1, sizeof *programs->leads),
         .batch_count = hair->batch_count,
         .limits = &gpu->limits,
-        .strands_per_lane = in_registers ? sizes->strands : 1,
+        .strands_per_lane =
+            in_registers ? sizes->strands : strands_in_memory(sizes, hair, options),
         .in_registers = in_registers,
         .ordered = gpu->kind == GPU_HARDWARE,
     };
@@ -183,4 +196,11 @@ void step_programs_dispatch(const StepPrograms *programs, uint32_t batch, uint32
     glUseProgram(programs->programs[batch]);
     uint64_t per_group = (uint64_t)programs->limits->sizes.strands * programs->strands_per_lane;
     gpu_dispatch(programs->limits, strand_count, per_group, 1);
+}
+
+uint64_t step_programs_lanes(const StepPrograms *programs, uint32_t strand_count)
+{
+    uint64_t lanes = (uint64_t)programs->limits->sizes.strands,
+             per_group = lanes * programs->strands_per_lane;
+    return (strand_count + per_group - 1) / per_group * lanes;
 }

@@ -82,6 +82,8 @@ typedef struct StepProgramsOptions {
     const char *shader; // glsl file
     StepShape shape;    // row of STEP_SIZES: which strands stay in registers, strands per lane
     uint32_t lead;      // vertices after the root that the head carries, if a strand has enough
+    // SolverRecipe.most_vertices
+    uint32_t most_vertices;
     bool sheltered;     // the head blocks wind (forces.glsl)
     bool styled;        // there is a spring towards the style
     bool varies;        // parameters differ along the strand (along.h)
@@ -109,3 +111,6 @@ void step_programs_destroy(StepPrograms *programs);
 
 // Runs the program of batch `batch` on `strand_count` strands. The caller has bound the buffers.
 void step_programs_dispatch(const StepPrograms *programs, uint32_t batch, uint32_t strand_count);
+
+// Number of lanes with work in that dispatch; each has its own scratch memory.
+uint64_t step_programs_lanes(const StepPrograms *programs, uint32_t strand_count);

@@ -9,10 +9,11 @@
 // scripts/gpu-statistics (docs/gpu_development.md). Solvers for which only a few vertices would fit
 // stay in memory: chain, hybrid and emulation keep 11 to 16 numbers per vertex.
 const StepSizes STEP_SIZES[STEP_SHAPES][GPU_KINDS] = {
-    [STEP_IN_MEMORY] = {[GPU_CPU_DRIVER] = {0, 1}, [GPU_HARDWARE] = {0, 1}},
-    [STEP_CHAIN] = {[GPU_CPU_DRIVER] = {16, 1}, [GPU_HARDWARE] = {0, 1}},
-    [STEP_EMULATION] = {[GPU_CPU_DRIVER] = {33, 1}, [GPU_HARDWARE] = {0, 1}},
-    [STEP_HYBRID] = {[GPU_CPU_DRIVER] = {33, 1}, [GPU_HARDWARE] = {0, 1}},
-    [STEP_ROPE] = {[GPU_CPU_DRIVER] = {33, 1}, [GPU_HARDWARE] = {8, 1}},
-    [STEP_SPLIT] = {[GPU_CPU_DRIVER] = {33, 2}, [GPU_HARDWARE] = {20, 1}},
+    [STEP_IN_MEMORY] = {[GPU_CPU_DRIVER] = {0, 1, 1}, [GPU_HARDWARE] = {0, 1, 1}},
+    [STEP_CHAIN] = {[GPU_CPU_DRIVER] = {16, 1, 8}, [GPU_HARDWARE] = {0, 1, 1}},
+    [STEP_EMULATION] = {[GPU_CPU_DRIVER] = {33, 1, 8}, [GPU_HARDWARE] = {0, 1, 1}},
+    [STEP_HYBRID] = {[GPU_CPU_DRIVER] = {33, 1, 8}, [GPU_HARDWARE] = {0, 1, 1}},
+    [STEP_ROD] = {[GPU_CPU_DRIVER] = {0, 1, 8}, [GPU_HARDWARE] = {0, 1, 1}},
+    [STEP_ROPE] = {[GPU_CPU_DRIVER] = {33, 1, 1}, [GPU_HARDWARE] = {8, 1, 1}},
+    [STEP_SPLIT] = {[GPU_CPU_DRIVER] = {33, 2, 1}, [GPU_HARDWARE] = {20, 1, 1}},
 };

@@ -13,6 +13,7 @@ typedef enum StepShape {
     STEP_CHAIN,
     STEP_EMULATION,
     STEP_HYBRID,
+    STEP_ROD,
     STEP_ROPE,
     STEP_SPLIT,
     STEP_SHAPES
@@ -25,6 +26,10 @@ typedef struct StepSizes {
     // Strands per lane if they are in registers. On a CPU two strands hide each other's latency; on
     // a GPU other waves do.
     uint32_t strands;
+    // Strands per lane, one after the other, if they are in scratch memory. The memory belongs to
+    // the lane (glsl/sim/scratch.glsl), so it stays in a CPU's cache from strand to strand; a GPU
+    // needs all lanes that there are. At least 1.
+    uint32_t strands_in_memory;
 } StepSizes;
 
 extern const StepSizes STEP_SIZES[STEP_SHAPES][GPU_KINDS];

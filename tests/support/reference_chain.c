@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "support/reference_chain.h"
-#include "support/reference_bend.h"
 #include "support/reference_split.h"
 
 #include <math.h>
@@ -64,46 +63,7 @@ static void apply(Vec *x, int n, const Vec *g)
     }
 }
 
-// Contributions of bending to the second system: the masses between the ends of each segment, and
-// the positions that a leapfrog step with these masses would give segments.
-typedef struct Bending {
-    double mass[TWIN_MAX + 1];
-    Vec pull[TWIN_MAX];
-} Bending;
-
-// The displacement of particles in a step for an acceleration of 1, with the style's springs
-// implicit.
-static double find_acts(const TwinStep *step, const SectionParams *params)
-{
-    double h = step->first ? step->dt / 2 : step->dt, c = step->drag, share = params->style;
-    double acts = step->dt * (c > 0 ? -expm1(-c * h) / c : h);
-    return acts / (1 + (double)params->style_stiffness * share / (1 - share) * acts);
-}
-
-static void find_bending(const TwinStrand *strand, const TwinStep *step,
-                         const SectionParams *params, const Vec *r, const Vec *v_old,
-                         Bending *bending)
-{
-    const int n = strand->n;
-    double acts = reference_bend_stiffness(params) * find_acts(step, params);
-    double decay = exp(-step->drag * (step->first ? step->dt / 2 : step->dt));
-    double kept = fmax(decay, 1 - 0.9 / (n - 1));
-    Vec gradient[TWIN_MAX];
-    *bending = (Bending){0};
-    if (acts == 0) return;
-    reference_bend_energy(strand, &step->head, r, gradient);
-    for (int j = 1; j < n; ++j) {
-        double beyond = j + 1 < n ? strand->length[j + 1] / (2 * strand->length[j]) : 0;
-        bending->mass[j] = 3 * acts * (n - 1) * (n - 1) / strand->length[j] * fmax(1, beyond);
-        for (int i = 0; i < 3; ++i)
-            bending->pull[j][i] =
-                bending->mass[j] * (r[j][i] + kept * step->dt * (v_old[j][i] - v_old[j - 1][i])) -
-                acts * gradient[j][i];
-    }
-}
-
-static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, double acts,
-                          double *lambda)
+static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, double *lambda)
 {
     double right[TWIN_MAX] = {0};
     for (int j = 1; j < strand->n; ++j) {
@@ -112,29 +72,25 @@ static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, 
         right[j] = strand->length[j] * (vec_norm(s) - strand->length[j]);
     }
     reference_solve_lengths(r, strand->n, right, lambda);
-    for (int j = 1; j < strand->n; ++j) lambda[j] += acts * strand->carried[j];
 }
 
-static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step,
-                            const SectionParams *params, Vec *x)
+static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step, Vec *x)
 {
     const double least = 0.25, stiff_from = 8;
     const int n = strand->n;
     Vec r[TWIN_MAX], g[TWIN_MAX];
     double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], stiff[TWIN_MAX + 1] = {0};
     double diagonal[TWIN_MAX] = {0}, upper[TWIN_MAX] = {0}, lower[TWIN_MAX] = {0};
-    Bending bending;
     for (int j = 1; j < n; ++j) subtract(strand->x[j], strand->x[j - 1], r[j]);
-    find_tensions(strand, (const Vec *)r, (const Vec *)x, find_acts(step, params), lambda);
-    find_bending(strand, step, params, (const Vec *)r, v_old, &bending);
+    find_tensions(strand, (const Vec *)r, (const Vec *)x, lambda);
     for (int j = 1; j < n; ++j) {
         double tension = fmax(lambda[j], 0), beyond = fmax(tension - stiff_from, 0);
         double theta = least + least * beyond / (beyond + stiff_from);
-        stiff[j] = theta * tension + bending.mass[j];
+        stiff[j] = theta * tension;
         for (int i = 0; i < 3; ++i) {
             double before = r[j][i] - step->dt * (v_old[j][i] - v_old[j - 1][i]);
             g[j][i] = (lambda[j] - tension) * r[j][i] +
-                      tension * ((1 - 2 * theta) * r[j][i] + theta * before) - bending.pull[j][i];
+                      tension * ((1 - 2 * theta) * r[j][i] + theta * before);
         }
     }
     apply(x, n, (const Vec *)g);
@@ -232,18 +188,6 @@ static void rebuild(TwinStrand *strand, const Vec *x, double dt)
         for (int i = 0; i < 3; ++i) strand->v[j][i] = (strand->x[j][i] - old[j][i]) / dt;
 }
 
-// In the frame of the head at the end of the step.
-static double bending_energy(const TwinStrand *strand, const TwinStep *step,
-                             const SectionParams *params)
-{
-    Vec r[TWIN_MAX];
-    for (int j = 1; j < strand->n; ++j) subtract(strand->x[j], strand->x[j - 1], r[j]);
-    double stiffness = reference_bend_stiffness(params);
-    return stiffness > 0
-               ? stiffness * reference_bend_energy(strand, &step->head, (const Vec *)r, NULL)
-               : 0;
-}
-
 // The kinetic energy gained in a step minus the work of the forces, which is the energy that
 // constraints gave, if the strand had moved by the share k of its way: a k^2 + b k + c.
 static void account(const Motion *motion, int n, double *a, double *b, double *c)
@@ -292,13 +236,11 @@ static double allowed(const TwinStrand *strand, const TwinStep *step, double kin
 
 // Slows the strand down if it has gained more energy than is allowed. `stored`: the rise of the
 // springs' energy in the step.
-static void guard(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
-                  const Motion *motion, const Vec *x_old, double stored)
+static void guard(TwinStrand *strand, const TwinStep *step, const Motion *motion, const Vec *x_old)
 {
     const int n = strand->n;
-    double kinetic, linear, constant, bent = bending_energy(strand, step, params);
+    double kinetic, linear, constant;
     account(motion, n, &kinetic, &linear, &constant);
-    linear += stored;
     constant += strand->gained;
     strand->gained = fmax(kinetic + linear + constant, 0);
     if (!(strand->gained > allowed(strand, step, kinetic)) || !(kinetic > 0)) return;
@@ -316,27 +258,8 @@ static void guard(TwinStrand *strand, const TwinStep *step, const SectionParams 
         vec_add_scaled(strand->v[0], kept, now, strand->v[j]);
     }
     // Segments that rotate move slightly farther than by the share of their way.
-    slowed += bending_energy(strand, step, params) - (bent - (1 - share) * stored) +
-              kept * kept * (squares - kinetic);
+    slowed += kept * kept * (squares - kinetic);
     strand->gained = fmax(slowed - over, 0);
-}
-
-// Carries the first correction over to the tensions of the next steps, limited by the largest
-// possible tension: the forces on everything beyond the segment.
-static void carry_tensions(TwinStrand *strand, const TwinStep *step, const SectionParams *params,
-                           const double *lambda, bool violent)
-{
-    double length = 0, acts = find_acts(step, params), share = (double)params->style;
-    Vec push;
-    for (int j = 1; j < strand->n; ++j) length += strand->length[j];
-    vec_add_scaled(step->gravity, step->drag, step->wind, push);
-    double spring = (double)params->style_stiffness * share / (1 - share);
-    double force = vec_norm(push) + spring * 2 * length;
-    for (int j = 1; j < strand->n; ++j) {
-        double most = 2 * (strand->n - j) * force / strand->length[j];
-        double carried = strand->carried[j] + lambda[j] / acts;
-        strand->carried[j] = violent ? 0 : fmin(fmax(carried, -most), most);
-    }
 }
 
 static bool is_violent(const TwinStrand *strand, const Vec *x)
@@ -354,12 +277,10 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
     memcpy(v_old, strand->v, sizeof v_old);
     reference_predict(strand, step, params, predicted);
     memcpy(x, predicted, sizeof x);
-    double bent = bending_energy(strand, step, params);
-    pull_implicitly(strand, (const Vec *)v_old, step, params, x);
+    pull_implicitly(strand, (const Vec *)v_old, step, x);
     correct(strand, x, lambda);
     correct(strand, x, again);
     bool violent = is_violent(strand, (const Vec *)x);
-    if (reference_bend_stiffness(params) > 0) carry_tensions(strand, step, params, lambda, violent);
     if (violent) reference_two_pass(strand, (const Vec *)predicted, predicted[0], x);
     rebuild(strand, (const Vec *)x, step->dt);
 
@@ -367,6 +288,5 @@ void reference_chain_step(TwinStrand *strand, const TwinStep *step, const Sectio
     subtract_root(n, (const Vec *)strand->v, motion.now);
     find_forced(step, (const Vec *)x_old, (const Vec *)v_old, (const Vec *)predicted, strand->v[0],
                 violent, n, motion.forced);
-    guard(strand, step, params, &motion, (const Vec *)x_old,
-          bending_energy(strand, step, params) - bent);
+    guard(strand, step, &motion, (const Vec *)x_old);
 }

@@ -15,7 +15,9 @@ typedef struct TwinStrand {
     Vec x[TWIN_MAX], v[TWIN_MAX]; // m, m/s
     Vec style[TWIN_MAX];          // the rest shape in the head's frame, m
     double length[TWIN_MAX];
-    double carried[TWIN_MAX]; // 1/s^2: additions of chain's corrections to tensions with bending
+    double carried[TWIN_MAX]; // of dftl: see reference_dftl.c
+    double twist[TWIN_MAX];   // rad, of rod's joints
+    double energy;            // m^3/s^2, of rod's joints, less what it has gained and not paid
     double gained;            // m^2/s^2: energy from constraints of chain and dftl, not yet removed
     double paid;              // share of its velocities that dftl's next step removes
 } TwinStrand;
