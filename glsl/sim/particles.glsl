@@ -11,6 +11,7 @@
 #include "common/rigid.glsl"
 #include "sim/frame.glsl"
 #include "sim/forces.glsl"
+#include "sim/relative.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -19,10 +20,11 @@ layout(binding = BIND_REST) uniform samplerBuffer rest; // the style: see hair.h
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 
-// A particle at the step's start: xyz, m and m/s. A lane fetches only particles of its own strand,
-// and each of them before it stores to that particle. If loads and stores to the same memory keep
-// their order, that is enough: ORDERED 1 reads the buffers themselves. CPU drivers read the same
-// memory through textures; a GPU's compiler could move such reads behind a store.
+// A particle at the step's start: xyz, m and m/s; positions as in relative.glsl. A lane fetches
+// only particles of its own strand, and each of them before it stores to that particle. If loads
+// and stores to the same memory keep their order, that is enough: ORDERED 1 reads the buffers
+// themselves. CPU drivers read the same memory through textures; a GPU's compiler could move such
+// reads behind a store.
 #if ORDERED
 #define position_before(address) positions[address]
 #define velocity_before(address) velocities[address]
@@ -47,16 +49,6 @@ int strand_base(int strand)
 #endif
 }
 
-// The position of the root at the step's end; `root` is the texel of `rest` with j = 0.
-vec3 root_position(vec4 root) { return rotate(frame_rotation, root.xyz) + frame_translation; }
-
-// The displacement of the root in the step.
-vec3 root_move(vec4 root)
-{
-    vec3 old = rotate(frame_rotation_old, root.xyz) + frame_translation_old;
-    return root_position(root) - old;
-}
-
 // The next particle of the style, as carried by the head, relative to the root.
 vec3 next_style(vec3 before, vec4 rest, vec4 rotation)
 {
@@ -67,6 +59,6 @@ vec3 next_style(vec3 before, vec4 rest, vec4 rotation)
 void carry_lead(int base)
 {
 #if LEAD
-    positions[base - STRAND_TILE] = vec4(root_position(texelFetch(rest, base - STRAND_TILE)), 1.0);
+    positions[base - STRAND_TILE] = vec4(frame_root(texelFetch(rest, base - STRAND_TILE).xyz), 0.0);
 #endif
 }

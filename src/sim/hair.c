@@ -61,7 +61,7 @@ static void fill_strand(Float4 *rest, Float4 *position, const HairBatch *batch, 
     for (uint32_t j = 0; j < batch->vertex_count; ++j) {
         size_t at = hair_address(batch, slot, j);
         memcpy(position[at], q[j], sizeof q[j]);
-        position[at][3] = 1;
+        position[at][3] = 0;
         if (j == 0) continue;
         double r[3], length = 0;
         for (int k = 0; k < 3; ++k)
@@ -223,7 +223,7 @@ Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error
             for (uint32_t j = 0; j < batch->vertex_count; ++j) {
                 float *at = written[hair_address(batch, slot, j)];
                 memcpy(at, positions[(size_t)s * batch->vertex_count + j], sizeof *positions);
-                at[3] = 1;
+                at[3] = 0;
             }
         }
         gpu_buffer_write(&batch->position, 0, written, batch->position.size);

@@ -475,6 +475,7 @@ void solver_step(const Solver *solver, const SolverStep *whole)
     SolverStep step = *whole;
     int count = solver_substeps(solver, whole);
     step.dt = whole->dt / count;
+    for (int k = 0; k < 3; ++k) step.move_lost[k] /= (float)count;
     for (int part = 1; part <= count; ++part) {
         step.head = head_between(&whole->head_old, &whole->head, (float)part / (float)count);
         step.frame_old = (float)(part - 1) / (float)count;

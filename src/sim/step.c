@@ -15,6 +15,39 @@ static void carry(const HeadPose *head, const float point[3], vec3 carried)
     glm_vec3_add((float *)head->translation, carried, carried);
 }
 
+// A rotation is applied as q v + 2 q.xyz x (q.xyz x v + q.w v) in double precision.
+static void carry_exactly(const HeadPose *head, const float point[3], double carried[3])
+{
+    double q[4], v[3], t[3];
+    for (int i = 0; i < 4; ++i) q[i] = (double)head->rotation[i];
+    for (int i = 0; i < 3; ++i) v[i] = (double)point[i];
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        t[i] = q[j] * v[k] - q[k] * v[j] + q[3] * v[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        carried[i] = v[i] + 2 * (q[j] * t[k] - q[k] * t[j]) + (double)head->translation[i];
+    }
+}
+
+// The move of the pivot by the step's poses, as they are rounded.
+static void rounded_move(const SolverStep *step, double move[3])
+{
+    double old[3];
+    carry_exactly(&step->head_old, step->pivot, old);
+    carry_exactly(&step->head, step->pivot, move);
+    for (int k = 0; k < 3; ++k) move[k] -= old[k];
+}
+
+void step_set_move(SolverStep *step, const float pivot[3], const double move[3])
+{
+    double rounded[3];
+    memcpy(step->pivot, pivot, sizeof step->pivot);
+    rounded_move(step, rounded);
+    for (int k = 0; k < 3; ++k) step->move_lost[k] = (float)(move[k] - rounded[k]);
+}
+
 void step_shelter(SolverStep *step, const float middle[3], float share)
 {
     vec3 old = {0};
@@ -36,6 +69,12 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     StepParams uniforms = {.dt = (float)step->dt, .drag = params->drag};
     head_put(uniforms.head_rotation_old, uniforms.head_translation_old, &step->head_old);
     head_put(uniforms.head_rotation, uniforms.head_translation, &step->head);
+    double move[3];
+    rounded_move(step, move);
+    for (int k = 0; k < 3; ++k) {
+        uniforms.head_pivot[k] = step->pivot[k];
+        uniforms.head_move[k] = (float)(move[k] + (double)step->move_lost[k]);
+    }
     uniforms.frame_old = step->frame_old;
     uniforms.frame_now = step->frame_now;
     memcpy(uniforms.gravity, step->gravity, sizeof step->gravity);
