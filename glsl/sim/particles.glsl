@@ -5,7 +5,7 @@
 // Macros: GROUP_SIZE: lanes per group. STRANDS: strands per lane, GROUP_SIZE apart. IN_REGISTERS
 // and VERTICES: the strand has VERTICES vertices and may be stored in arrays, whose loops are
 // unrolled; otherwise strands have any length, step_params.vertex_count. LEAD: vertices before the
-// solver's root, which the head carries (0 or 1).
+// solver's root, which the head carries.
 #include "sim/step_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
@@ -38,8 +38,8 @@ layout(binding = BIND_STATE) uniform samplerBuffer velocity_texels;
 // The lane's first strand. Lanes beyond the last strand do nothing.
 int first_strand() { return group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }
 
-// With LEAD 1 the head also carries vertex 1, which is the solver's root: the solver sees vertices
-// 0 .. vertex_count - 1 from strand_base on.
+// The head also carries vertices 1 to LEAD, the last of which is the solver's root: the solver sees
+// vertices 0 .. vertex_count - 1 from strand_base on.
 int strand_base(int strand)
 {
 #if IN_REGISTERS
@@ -58,7 +58,10 @@ vec3 next_style(vec3 before, vec4 rest, vec4 rotation)
 // Writes the vertices before the solver's root.
 void carry_lead(int base)
 {
-#if LEAD
-    positions[base - STRAND_TILE] = vec4(frame_root(texelFetch(rest, base - STRAND_TILE).xyz), 0.0);
-#endif
+    vec3 x = LEAD > 0 ? texelFetch(rest, base - LEAD * STRAND_TILE).xyz : vec3(0.0);
+    for (int i = LEAD; i > 0; --i) {
+        positions[base - i * STRAND_TILE] = vec4(frame_root(x), 0.0);
+        vec4 segment = texelFetch(rest, base - (i - 1) * STRAND_TILE);
+        x += segment.w * segment.xyz;
+    }
 }

@@ -68,10 +68,11 @@ Strand open_strand(int number)
         strand.velocity = u * (most * inversesqrt(dot(u, u)));
         strand.limited += 1.0;
     }
-#if LEAD
-    vec4 lead = texelFetch(rest, strand.address);
-    segments[strand.address] = vec4(rotate(frame_rotation, lead.xyz), lead.w);
-#endif
+    for (int i = 0; i < LEAD; ++i) {
+        int a = strand.address - i * STRAND_TILE;
+        vec4 lead = texelFetch(rest, a);
+        segments[a] = vec4(rotate(frame_rotation, lead.xyz), lead.w);
+    }
     return strand;
 }
 

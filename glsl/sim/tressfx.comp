@@ -46,7 +46,7 @@
 // MOVE(j). Everything stays in memory: these loops with few accesses are as fast there as unrolled
 // loops in registers, and compile in a sixth of the time.
 int strand = 0, n = 0; // of the lane, set in main
-int address(int j) { return particle_address(strand, j, n); }
+int address(int j) { return particle_address(strand, j + LEAD, n + LEAD); }
 #define REST(j) texelFetch(rest, address(j))
 #define FROM(j) velocities[address(j)].xyz
 #define MOVE(j) positions[address(j)].xyz
@@ -90,7 +90,7 @@ struct Carried {
 
 Carried carried_by_head()
 {
-    vec4 root = texelFetch(rest, address(0)), first = REST(1), old = frame_rotation_old;
+    vec4 root = strand_root(address(0)), first = REST(1), old = frame_rotation_old;
     Carried carried;
     carried.root_old = relative_root(frame_root_old(root.xyz), root.w);
     carried.root = relative_root(frame_root(root.xyz), root.w);
@@ -115,7 +115,7 @@ const float MOST_LEVER = 2.0;
 // Stores the predicted displacements and the previous positions, both in the head's frame.
 void predict(Carried carried)
 {
-    vec3 wind = strand_wind(texelFetch(rest, address(0)).xyz, carried.root.at),
+    vec3 wind = strand_wind(strand_root(address(0)).xyz, carried.root.at),
          home = carried.root_moved;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
     vec4 to_head = conjugate(frame_rotation);
@@ -205,7 +205,7 @@ void keep_local_shape(Carried carried)
 // the clamp keeps a storm finite.
 void blow()
 {
-    vec4 root = texelFetch(rest, address(0));
+    vec4 root = strand_root(address(0));
     vec3 wind = rotate(conjugate(frame_rotation), strand_wind(root.xyz, frame_root(root.xyz)));
     float strength = 1e4 * step_params.dt * step_params.dt, most = tressfx_params.most_move;
     if (dot(wind, wind) == 0.0) return;
@@ -315,7 +315,7 @@ void pull_together(Carried carried)
 
 void keep_lengths(Carried carried)
 {
-    float longest = texelFetch(rest, address(0)).w;
+    float longest = strand_root(address(0)).w;
     Rows rows = open_rows(carried);
     for (int j = 2; j < n; ++j) positions[address(j)].w = add_row(rows, j, MOVE(j), longest);
     pull_together(carried);
@@ -338,7 +338,7 @@ void finish(Carried carried)
     Vertex first = first_vertex(carried);
     vec3 moved = first.move, world = rotate(to_world, first.x);
 #if !TRESSFX4
-    float longest = texelFetch(rest, address(0)).w;
+    float longest = strand_root(address(0)).w;
     vec3 from_before = first.x - first.move, move_before = first.move;
 #endif
     positions[address(0)] = vec4(carried.root.at, 0.0);
@@ -381,6 +381,7 @@ void main()
     n = int(step_params.vertex_count);
     open_frame(strand);
     Carried carried = carried_by_head();
+    carry_lead(address(0));
     predict(carried);
     int local_passes = n > 2 ? tressfx_params.local_passes : 0;
     for (int i = 0; i < local_passes; ++i) keep_local_shape(carried);

@@ -16,6 +16,7 @@
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
+    uint32_t held; // vertices of each strand, from the root, that its mobility holds (strands_held)
     // [strand_count], owned: the number in the file of the strand, or of a follower's guide. May be
     // NULL.
     uint32_t *strand;

@@ -148,18 +148,27 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
 }
 
 // Whether the strands can stay in registers during a step. They must have at most `most` vertices,
-// and at most MOST_COUNTS different vertex counts, because each count costs a compilation (0.2 to
-// 0.7 s on a CPU driver).
-static bool fits_registers(const Hair *hair, uint32_t most)
+// and at most MOST_COUNTS different numbers of vertices and leads, because each costs a compilation
+// (0.2 to 0.7 s on a CPU driver).
+static bool fits_registers(const Hair *hair, const uint32_t *leads, uint32_t most)
 {
     enum { MOST_COUNTS = 2 };
-    uint32_t counts = 0, last = 0;
+    uint32_t counts = 0, last = 0, last_lead = 0;
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         if (hair->batches[i].vertex_count > most) return false;
-        counts += hair->batches[i].vertex_count != last;
-        last = hair->batches[i].vertex_count;
+        counts += hair->batches[i].vertex_count != last || leads[i] != last_lead;
+        last = hair->batches[i].vertex_count, last_lead = leads[i];
     }
     return counts <= MOST_COUNTS;
+}
+
+static uint32_t lead_of(const HairBatch *batch, const StepProgramsOptions *options)
+{
+    uint32_t n = batch->vertex_count, own = options->carried > 1 ? options->carried : 1,
+             lead = n > 2 ? options->lead : 0; // at least the tip must be free
+    if (batch->held == n) return n - 1;
+    if (batch->held > own && batch->held - own > lead) lead = batch->held - own;
+    return lead;
 }
 
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
@@ -186,24 +195,26 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
                             const StepProgramsOptions *options, Error *error)
 {
     const StepSizes *sizes = &STEP_SIZES[options->shape][gpu->kind];
-    bool in_registers = fits_registers(hair, sizes->most_in_registers);
     *programs = (StepPrograms){
         .programs = calloc(hair->batch_count + 1, sizeof *programs->programs),
         .leads = calloc(hair->batch_count + 1, sizeof *programs->leads),
         .batch_count = hair->batch_count,
         .limits = &gpu->limits,
-        .strands_per_lane = in_registers ? sizes->strands : 1,
-        .in_registers = in_registers,
+        .strands_per_lane = 1,
         .ordered = gpu->kind == GPU_HARDWARE,
     };
     Result result = RESULT_OK;
     if (!programs->programs || !programs->leads)
         result = error_set(error, RESULT_FAILED, "no memory for a solver");
-    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i) {
-        // at least the tip must be free
-        programs->leads[i] = hair->batches[i].vertex_count > 2 ? options->lead : 0;
-        result = build(programs, i, hair->batches[i].vertex_count, options, error);
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
+        programs->leads[i] = lead_of(&hair->batches[i], options);
+    if (result == RESULT_OK) {
+        programs->in_registers = fits_registers(hair, programs->leads, sizes->most_in_registers);
+        if (programs->in_registers) programs->strands_per_lane = sizes->strands;
     }
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
+        if (hair->batches[i].held < hair->batches[i].vertex_count)
+            result = build(programs, i, hair->batches[i].vertex_count, options, error);
     if (result != RESULT_OK) step_programs_destroy(programs);
     return result;
 }

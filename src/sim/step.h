@@ -88,15 +88,17 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
 typedef struct StepProgramsOptions {
     const char *shader; // glsl file
     StepShape shape;    // row of STEP_SIZES: which strands stay in registers, strands per lane
-    uint32_t lead;      // vertices after the root that the head carries, if a strand has enough
-    bool sheltered;     // the head blocks wind (forces.glsl)
-    bool styled;        // there is a spring towards the style
-    bool varies;        // parameters differ along the strand (along.h)
-    bool bound;         // strands have frames of their own (bound.h)
+    // Vertices after the root that the head carries: of strands that keep a free tip, `lead`; where
+    // mobility holds more (HairBatch.held), those beyond the `carried` of the solver itself.
+    uint32_t lead, carried;
+    bool sheltered;              // the head blocks wind (forces.glsl)
+    bool styled;                 // there is a spring towards the style
+    bool varies;                 // parameters differ along the strand (along.h)
+    bool bound;                  // strands have frames of their own (bound.h)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
-// The programs of a solver: one for each batch of the hair.
+// The programs of a solver: one for each batch of the hair, 0 where all vertices are held.
 typedef struct StepPrograms {
     GLuint *programs; // [batch_count]
     uint32_t *leads;  // [batch_count]: vertices after the root that the head carries
