@@ -124,6 +124,7 @@ void main()
     }
 }
 #else
+// The strand's particle after the one at `from`.
 vec3 particle_before(int address, vec3 from)
 {
 #if MODE == SEGMENTS
@@ -307,7 +308,8 @@ void walk(Strand strand, float inside, bool touched)
 #if MODE == SEGMENTS
         segments[a] = at == x && p == p_before ? segment_before(a) : vec4((at - p) / l, l);
 #else
-        positions[a] = vec4(at, 1.0);
+        // where nothing is pushed, what relative.glsl stores stays
+        positions[a] = at == x ? position_before(a) : vec4(at, 0.0);
 #endif
 #if MODE == PARTICLES
         velocities[a] = vec4(v, velocity.w);

@@ -31,7 +31,7 @@ struct Constraint {
 Constraint constrain_open(Strand strand)
 {
     velocities[strand.address] = vec4(strand.root_velocity, 0.0);
-    positions[strand.address] = vec4(strand.root, 1.0);
+    store_root(strand);
     return Constraint(NO_ROW, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0);
 }
 
@@ -57,22 +57,29 @@ void constrain_add(inout Constraint p, Strand strand, int j, vec3 d, vec3 x)
     p.kinetic += dot(u, u);
     p.worked += dot(force, x - aim);
     keep_velocity(a, j, vec4(u, factor));
-    positions[a] = vec4(strand.root + x, 1.0);
+    store_position(strand, a, x);
     keep(j, vec4(d, p.row.value));
     p.d_before = d, p.u_before = u;
 }
 
-// The factor of the velocities that pays for the energy gained in the step.
-float pay(Constraint p, float gained)
+// Rounding of a position, as a share of the strand's length.
+const float ROUNDED = 6e-8;
+
+// The factor of the velocities that pays for the energy gained in the step. The work that rounding
+// seems to do is not gained: if each gain were paid and no loss came back, it would slow down hair
+// in short steps.
+float pay(Constraint p, Strand strand, float gained)
 {
-    float has = p.kinetic - p.lost, may = p.kinetic + 2.0 * (p.worked - gained);
+    float rounding =
+        float(LAST) * ROUNDED * strand.total_length * length(strand.push) / step_params.gain;
+    float has = p.kinetic - p.lost, may = p.kinetic + 2.0 * (p.worked - gained + rounding);
     return has > may ? sqrt(max(may, 0.0) / max(has, LEAST_PIVOT)) : 1.0; // never 0/0
 }
 
 // From tip to root: computes the impulses and the final velocities.
 void constrain_finish(Constraint p, Strand strand, float gained)
 {
-    float lambda = 0.0, factor_beyond = 0.0, scale = pay(p, gained);
+    float lambda = 0.0, factor_beyond = 0.0, scale = pay(p, strand, gained);
     vec3 t_beyond = vec3(0.0);
     for (int j = LAST; j >= 1; --j) {
         int a = strand.address + j * STRAND_TILE;

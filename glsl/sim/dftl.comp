@@ -35,13 +35,14 @@ void main()
     Strand strand = strand_open(s, dftl_params.spring);
     int tip = strand.address + last * STRAND_TILE;
     float per_second = 1.0 / strand.dt, given = dftl_params.damping * per_second;
-    vec3 leader = strand.root, leader_velocity = strand.root_velocity, style = vec3(0.0),
+    vec3 leader = vec3(0.0), leader_before = vec3(0.0), leader_moved = vec3(0.0),
+         leader_velocity = strand.root_velocity, style = vec3(0.0),
          along = rotate(strand.rotation, fetch_rest(strand, 1).xyz), x = fetch_position(strand, 1);
 #if GUARDED
     Account account = account_open(strand);
     float paid = velocity_before(tip).w;
 #endif
-    positions[strand.address] = vec4(leader, 1.0);
+    store_root(strand);
     for (int j = 1; j <= last; ++j) {
         int a = strand.address + j * STRAND_TILE;
         vec3 ahead = fetch_position(strand, min(j + 1, last));
@@ -49,29 +50,29 @@ void main()
 #if GUARDED
         u.xyz = mix(u.xyz, account.moved_before / strand.dt, paid);
 #endif
-        // u leads to x + move, v to x + move + back
-        vec3 kicked = kicked_velocity(strand, j, u.xyz), move = strand.dt * kicked,
+        // u leads to x + move, v to x + move + back, relative to the root
+        vec3 kicked = kicked_velocity(strand, j, u.xyz), move = strand.dt * kicked - strand.moved,
              back = strand.dt * (kicked_velocity(strand, j, u.xyz - u.w * (ahead - x)) - kicked);
 #if STYLED
         float pull = spring_of(strand, j).pull;
         style = next_style(style, segment, strand.rotation);
-        move += pull * (strand.root + style - x - move);
+        move += pull * (style - x - move);
         back -= pull * back;
 #endif
-        vec3 predicted = x + move + back;
-        vec3 reach = predicted - leader;
-        float square = dot(reach, reach);
+        vec3 link = x - leader_before, pulled = move + back - leader_moved, reach = link + pulled;
+        float square = dot(reach, reach), size = sqrt(square),
+              longer = relative_longer(link, pulled, segment.w, size, 0.0);
         // if it is on its leader, the last direction (at first the style's) continues
         along = square > 1e-24 ? reach * inversesqrt(square) : along;
-        vec3 follower = leader + segment.w * along;
-        velocities[a - STRAND_TILE] =
-            vec4(leader_velocity, given * (1.0 - sqrt(square) / segment.w));
-        positions[a] = vec4(follower, 1.0);
+        velocities[a - STRAND_TILE] = vec4(leader_velocity, -given * longer / segment.w);
+        leader_moved += relative_turn(link, pulled, segment.w, size, 0.0, along);
+        leader += segment.w * along;
+        store_position(strand, a, leader);
 #if GUARDED
-        account_add(account, strand, follower - x, move, u.xyz);
+        account_add(account, strand, leader_moved, move, u.xyz);
 #endif
-        leader_velocity = per_second * (follower - x);
-        leader = follower, x = ahead;
+        leader_velocity = per_second * (leader_moved + strand.moved);
+        leader_before = x, x = ahead;
     }
     velocities[tip] = vec4(leader_velocity, 0.0);
 #if GUARDED

@@ -48,16 +48,15 @@ vec4 link_at(Strand strand, int j, vec3 q, vec3 q_before)
 #if THESIS
 void predict(Strand strand)
 {
-    vec3 q_before = strand.root_old, style = vec3(0.0);
+    vec3 q_before = vec3(0.0), style = vec3(0.0);
     for (int k = 0; k < LAST; ++k) {
         int j = k + 1;
-        vec3 q = fetch_position(strand, j),
-             p = (q - strand.root) + predicted_move(strand, j, q, style);
+        vec3 q = fetch_position(strand, j), p = q + predicted_move(strand, j, q, style);
         keep(j, link_at(strand, j, q, q_before));
         keep_velocity(strand.address + j * STRAND_TILE, j, vec4(p, 0.0));
         q_before = q;
     }
-    kept_root = vec4(strand.root_old - strand.root, 0.0);
+    kept_root = vec4(-strand.moved, 0.0);
 }
 
 vec3 aim_of(Strand strand, int j)
@@ -70,7 +69,7 @@ void predict(Strand strand)
     Middle middle = middle_open(strand);
     vec3 q = fetch_position(strand, LAST);
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1);
+        vec3 q_before = j == 1 ? vec3(0.0) : fetch_position(strand, j - 1);
         middle_place(middle, strand, j, q);
         keep(j, link_at(strand, j, q, q_before));
         q = q_before;
@@ -229,17 +228,17 @@ void finish(Strand strand)
 #if THESIS
     vec3 style = vec3(0.0);
     velocities[strand.address] = vec4(strand.root_velocity, 0.0);
-    positions[strand.address] = vec4(strand.root, 1.0);
+    store_root(strand);
     for (int k = 0; k < LAST; ++k) {
         int j = k + 1, a = strand.address + j * STRAND_TILE;
         vec4 r = fetch_rest(strand, j);
         vec3 q = fetch_position(strand, j);
         x += r.w * home(move, j);
         style = next_style(style, r, strand.rotation);
-        velocities[a] = vec4((x - (q - strand.root)) / strand.dt +
+        velocities[a] = vec4((x - q + strand.moved) / strand.dt +
                                  strand.spring.stiffness * strand.dt * (style - x),
                              0.0);
-        positions[a] = vec4(strand.root + x, 1.0);
+        store_position(strand, a, x);
     }
 #else
     Constraint constraint = constrain_open(strand);

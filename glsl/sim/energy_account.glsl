@@ -19,10 +19,10 @@
 // smallest gain and reduce the velocities to pay for the rest.
 //
 // SLOWS_AGAIN 1: segments that flip have no intermediate direction and move by all of their way or
-// none. If the strand's moves then have more than 1.5 times the intended energy, they are reduced
+// none. If the strand's moves then have more than 1.1 times the intended energy, they are reduced
 // again.
 
-const float NOISE = 1e-6; // of a position; rounding errors are 6e-8
+const float NOISE = 1e-6; // of a strand's length; rounding errors are 6e-8
 
 struct Account {
     vec3 moved, moved_before;        // of the root, in this step and in the previous one
@@ -33,15 +33,14 @@ struct Account {
 Account account_open(Strand strand)
 {
     vec4 before = velocity_before(strand.address);
-    return Account(strand.root - strand.root_old, before.xyz * strand.dt, 0.0, 0.0, 0.0, before.w);
+    return Account(strand.moved, before.xyz * strand.dt, 0.0, 0.0, 0.0, before.w);
 }
 
-// Adds a particle that moved by `move`, would have moved by `free` without constraints, and had the
-// velocity v.
-void account_add(inout Account account, Strand strand, vec3 move, vec3 free, vec3 v)
+// Adds a particle that moved by `now` relative to the root, would have moved by `forced` without
+// constraints, and had the velocity v.
+void account_add(inout Account account, Strand strand, vec3 now, vec3 forced, vec3 v)
 {
-    vec3 now = move - account.moved, before = v * strand.dt - account.moved_before,
-         forced = free - account.moved;
+    vec3 before = v * strand.dt - account.moved_before;
     account.squares += dot(now, now);
     account.linear += dot(now, before - forced);
     account.constant -= dot(forced, before);
@@ -73,7 +72,7 @@ float root_of_rest(float x) { return sqrt(max(1.0 - x, 0.0)); }
 
 #if SLOWS_AGAIN
 const int MOST_SLOWED = 6; // per step
-const float LESS = 0.4;    // factor of each reduction; one half would leave it undecided which way
+const float LESS = 0.3;    // factor of each reduction; one half would leave it undecided which way
                            // a flipping segment goes
 #endif
 
@@ -81,19 +80,21 @@ const float LESS = 0.4;    // factor of each reduction; one half would leave it 
 void account_slow(inout Account account, Strand strand, int last, float share, float kept)
 {
     float squares = 0.0;
-    vec3 x = strand.root, x_full = strand.root, q = strand.root_old,
-         root = account.moved / strand.dt;
+    vec3 x = vec3(0.0), now = vec3(0.0), full_before = vec3(0.0), root = account.moved / strand.dt,
+         v_before = root;
     for (int j = 1; j <= last; ++j) {
         int a = strand.address + j * STRAND_TILE;
-        vec4 v = velocities[a];
-        vec3 full = positions[a].xyz, from = full - strand.dt * v.xyz;
-        vec4 segment = fetch_rest(strand, j);
-        vec3 d = direction(mix(from - q, full - x_full, share));
+        vec4 v = velocities[a], segment = fetch_rest(strand, j);
+        vec3 full = relative_fetch(positions[a], strand.root),
+             turned = strand.dt * (v.xyz - v_before), link = full - full_before - turned,
+             slowed = link + share * turned, d = direction(slowed);
         x += segment.w * d;
-        x_full = full, q = from;
-        velocities[a] = vec4(root + kept * ((x - from) / strand.dt - root), v.w);
-        positions[a] = vec4(x, 1.0);
-        vec3 now = x - from - account.moved;
+        // `kept` of an earlier call leaves links whose old lengths are off
+        float off = relative_off(link, segment.w, strand.total_length);
+        now += relative_turn(link, share * turned, segment.w, length(slowed), off, d);
+        full_before = full, v_before = v.xyz;
+        velocities[a] = vec4(root + kept * now / strand.dt, v.w);
+        store_position(strand, a, x);
         squares += dot(now, now);
     }
     account.squares = squares;
@@ -109,7 +110,7 @@ float account_fall(Strand strand, int last)
 // no other energy and needs no guard.
 float account_noise(Strand strand, int last)
 {
-    float speed = NOISE * (strand.total_length + length(strand.root)) / strand.dt;
+    float speed = NOISE * strand.total_length / strand.dt;
     return 0.5 * float(last) * speed * speed;
 }
 
@@ -135,8 +136,7 @@ float account_close(inout Account account, Strand strand, int last)
         gained -= over;
         gained += kept * kept * (per_square * account.squares - kinetic);
 #if SLOWS_AGAIN
-        for (int i = 0; i < MOST_SLOWED && per_square * account.squares > 1.5 * kinetic + fall;
-             ++i) {
+        for (int i = 0; i < MOST_SLOWED && per_square * account.squares > 1.1 * kinetic; ++i) {
             share *= LESS, kinetic *= LESS * LESS;
             gained = share * linear + constant;
             account_slow(account, strand, last, LESS, 1.0);

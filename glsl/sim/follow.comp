@@ -40,6 +40,6 @@ void main()
         float gathered = follow_params.clump * float(j) / float(n - 1);
         x += gathered * (texelFetch(guides, a + at).xyz - x);
 #endif
-        positions[to + at] = vec4(x, 1.0);
+        positions[to + at] = vec4(x, 0.0);
     }
 }

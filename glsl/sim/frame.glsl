@@ -35,3 +35,19 @@ void open_frame(int strand)
 #define frame_gravity         step_params.gravity.xyz
 #define open_frame(strand)
 #endif
+
+// Where a root at rest (m) is at the step's start and end, and its displacement in the step. Far
+// from the origin the difference of two positions would be too rough for short steps.
+vec3 frame_root_old(vec3 root) { return rotate(frame_rotation_old, root) + frame_translation_old; }
+vec3 frame_root(vec3 root) { return rotate(frame_rotation, root) + frame_translation; }
+
+vec3 frame_move(vec3 root)
+{
+#if BOUND
+    return frame_root(root) - frame_root_old(root);
+#else
+    vec3 arm = root - step_params.head_pivot.xyz;
+    return step_params.head_move.xyz +
+           (rotate(frame_rotation, arm) - rotate(frame_rotation_old, arm));
+#endif
+}

@@ -26,8 +26,8 @@ vec3 pull_tip(Strand strand, inout Middle middle)
 {
     vec3 q = fetch_position(strand, LAST), y = middle_place(middle, strand, LAST, q);
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j == 1 ? strand.root_old : fetch_position(strand, j - 1);
-        vec3 move = limit_move(y - (q - strand.root_old) - strand.dt * middle.w);
+        vec3 q_before = j == 1 ? vec3(0.0) : fetch_position(strand, j - 1);
+        vec3 move = limit_move(y - q - strand.dt * middle.w);
         float l = fetch_rest(strand, j).w;
         vec3 d = tractrix_turn(direction(q_before - q), l, move);
         y += l * d;

@@ -41,6 +41,6 @@ void main()
         int a = first + j * STRAND_TILE;
         vec3 p = rotate(from_earlier, texelFetch(earlier, a).xyz - at_earlier);
         vec3 q = rotate(from_later, texelFetch(later, a).xyz - at_later);
-        positions[a] = vec4(rotate(to_now, p + share * (q - p)) + at_now, 1.0);
+        positions[a] = vec4(rotate(to_now, p + share * (q - p)) + at_now, 0.0);
     }
 }

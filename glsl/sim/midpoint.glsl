@@ -49,10 +49,10 @@ vec3 sprung(Strand strand, int j, vec3 kick, vec3 offset)
 vec3 sprung_apart(Strand strand, int j, vec3 kick, vec3 kick_before, vec3 q, vec3 q_before,
                   inout vec3 style)
 {
-    vec3 there = sprung(strand, j, kick, q - strand.root_old - style);
+    vec3 there = sprung(strand, j, kick, q - style);
     style -= next_style(vec3(0.0), fetch_rest(strand, j), strand.rotation);
     if (j == 1) return there;
-    return there - sprung(strand, j - 1, kick_before, q_before - strand.root_old - style);
+    return there - sprung(strand, j - 1, kick_before, q_before - style);
 }
 
 vec3 style_of_tip(Strand strand)
@@ -75,7 +75,7 @@ void find_directions(Strand strand)
     vec3 style = style_of_tip(strand);
 #endif
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = strand.root_old, v_before = strand.root_velocity, kick_before = vec3(0.0);
+        vec3 q_before = vec3(0.0), v_before = strand.root_velocity, kick_before = vec3(0.0);
         if (j > 1) {
             q_before = fetch_position(strand, j - 1), v_before = fetch_velocity(strand, j - 1);
             kick_before = kicked(strand, j - 1, v_before);
@@ -104,7 +104,7 @@ vec3 find_tensions(Strand strand)
 {
     int last = LAST;
     float h = 0.5 * strand.dt, lambda = 0.0, factor_before = 0.0, t_before = 0.0, factor;
-    vec3 q_before = strand.root_old, g_before = vec3(0.0), vs_before = vec3(0.0), style = vec3(0.0);
+    vec3 q_before = vec3(0.0), g_before = vec3(0.0), vs_before = vec3(0.0), style = vec3(0.0);
     Row3 row = NO_ROW3;
     for (int k = 0; k < last; ++k) {
         int j = k + 1;
@@ -122,8 +122,7 @@ vec3 find_tensions(Strand strand)
 #if STYLED
         style = next_style(style, r, strand.rotation);
 #endif
-        vs_before = sprung(strand, j, kicked(strand, j, fetch_velocity(strand, j)),
-                           q - strand.root_old - style);
+        vs_before = sprung(strand, j, kicked(strand, j, fetch_velocity(strand, j)), q - style);
         q_before = q, g_before = g, t_before = t;
     }
     row = eliminate(row, -h * t_before, 1.0 + h * t_before, vs_before - g_before, factor);
@@ -154,9 +153,8 @@ Middle middle_open(Strand strand)
 vec3 middle_place(inout Middle m, Strand strand, int j, vec3 q)
 {
     int a = strand.address + j * STRAND_TILE;
-    vec3 offset = q - strand.root_old, kick = kicked(strand, j, fetch_velocity(strand, j)),
-         p = offset + strand.dt * m.w;
-    m.gained += 2.0 * dot(m.w, m.w - sprung(strand, j, kick, offset - m.style));
+    vec3 kick = kicked(strand, j, fetch_velocity(strand, j)), p = q + strand.dt * m.w;
+    m.gained += 2.0 * dot(m.w, m.w - sprung(strand, j, kick, q - m.style));
     keep_aim(a, j, p);
     keep_velocity(a, j, vec4(2.0 * m.w - kick, 0.0));
 #if STYLED

@@ -5,12 +5,13 @@
 // Macros: GROUP_SIZE: lanes per group. STRANDS: strands per lane, GROUP_SIZE apart. IN_REGISTERS
 // and VERTICES: the strand has VERTICES vertices and may be stored in arrays, whose loops are
 // unrolled; otherwise strands have any length, step_params.vertex_count. LEAD: vertices before the
-// solver's root, which the head carries (0 or 1).
+// solver's root, which the head carries.
 #include "sim/step_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
 #include "sim/frame.glsl"
 #include "sim/forces.glsl"
+#include "sim/relative.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -19,10 +20,11 @@ layout(binding = BIND_REST) uniform samplerBuffer rest; // the style: see hair.h
 layout(std430, binding = BIND_POSITION_OUT) buffer Positions { vec4 positions[]; };
 layout(std430, binding = BIND_STATE_OUT) buffer Velocities { vec4 velocities[]; };
 
-// A particle at the step's start: xyz, m and m/s. A lane fetches only particles of its own strand,
-// and each of them before it stores to that particle. If loads and stores to the same memory keep
-// their order, that is enough: ORDERED 1 reads the buffers themselves. CPU drivers read the same
-// memory through textures; a GPU's compiler could move such reads behind a store.
+// A particle at the step's start: xyz, m and m/s; positions as in relative.glsl. A lane fetches
+// only particles of its own strand, and each of them before it stores to that particle. If loads
+// and stores to the same memory keep their order, that is enough: ORDERED 1 reads the buffers
+// themselves. CPU drivers read the same memory through textures; a GPU's compiler could move such
+// reads behind a store.
 #if ORDERED
 #define position_before(address) positions[address]
 #define velocity_before(address) velocities[address]
@@ -36,8 +38,8 @@ layout(binding = BIND_STATE) uniform samplerBuffer velocity_texels;
 // The lane's first strand. Lanes beyond the last strand do nothing.
 int first_strand() { return group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x); }
 
-// With LEAD 1 the head also carries vertex 1, which is the solver's root: the solver sees vertices
-// 0 .. vertex_count - 1 from strand_base on.
+// The head also carries vertices 1 to LEAD, the last of which is the solver's root: the solver sees
+// vertices 0 .. vertex_count - 1 from strand_base on.
 int strand_base(int strand)
 {
 #if IN_REGISTERS
@@ -45,16 +47,6 @@ int strand_base(int strand)
 #else
     return particle_address(strand, LEAD, int(step_params.vertex_count) + LEAD);
 #endif
-}
-
-// The position of the root at the step's end; `root` is the texel of `rest` with j = 0.
-vec3 root_position(vec4 root) { return rotate(frame_rotation, root.xyz) + frame_translation; }
-
-// The displacement of the root in the step.
-vec3 root_move(vec4 root)
-{
-    vec3 old = rotate(frame_rotation_old, root.xyz) + frame_translation_old;
-    return root_position(root) - old;
 }
 
 // The next particle of the style, as carried by the head, relative to the root.
@@ -66,7 +58,10 @@ vec3 next_style(vec3 before, vec4 rest, vec4 rotation)
 // Writes the vertices before the solver's root.
 void carry_lead(int base)
 {
-#if LEAD
-    positions[base - STRAND_TILE] = vec4(root_position(texelFetch(rest, base - STRAND_TILE)), 1.0);
-#endif
+    vec3 x = LEAD > 0 ? texelFetch(rest, base - LEAD * STRAND_TILE).xyz : vec3(0.0);
+    for (int i = LEAD; i > 0; --i) {
+        positions[base - i * STRAND_TILE] = vec4(frame_root(x), 0.0);
+        vec4 segment = texelFetch(rest, base - (i - 1) * STRAND_TILE);
+        x += segment.w * segment.xyz;
+    }
 }

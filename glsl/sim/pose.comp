@@ -16,6 +16,7 @@
 #include "sim/pose_params.h"
 #include "common/hair_address.glsl"
 #include "common/rigid.glsl"
+#include "sim/relative.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
@@ -117,11 +118,12 @@ void main()
     rotation = product(rotation, own);
     hanging = rotate(rotation, hanging);
 #endif
-    vec3 x = rotate(rotation, root.xyz) + translation;
+    Root at = relative_root(rotate(rotation, root.xyz) + translation, root.w);
+    vec3 x = vec3(0.0);
     // A matrix rotates a vector with half as many operations as a quaternion.
     mat3 head = mat3(rotate(rotation, vec3(1.0, 0.0, 0.0)), rotate(rotation, vec3(0.0, 1.0, 0.0)),
                      rotate(rotation, vec3(0.0, 0.0, 1.0)));
-    positions[first] = vec4(x, 1.0);
+    positions[first] = vec4(at.at, 0.0);
     for (int j = 1; j < n; ++j) {
         int a = first + j * STRAND_TILE;
 #if MIX == 1
@@ -154,6 +156,10 @@ void main()
 #endif
 #endif
         x += segment.w * d;
-        positions[a] = vec4(x, 1.0);
+#if MIX == 0
+        positions[a] = relative_store(x, at); // particles start there
+#else
+        positions[a] = vec4(at.at + x, 0.0);
+#endif
     }
 }

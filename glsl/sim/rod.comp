@@ -46,7 +46,7 @@
 const float FAR_TURN = 0.3;    // rad; a round turns no segment by more
 const float THIRD_ROUND = 0.1; // rad; a strand that turned farther in the second round has a third
 const float ALLOWED = 0.005;
-const float NOISE = 1e-6; // of a position; rounding errors are 6e-8
+const float NOISE = 1e-6; // of a strand's length; rounding errors are 6e-8
 // 1/dt times the root's new velocity, less the mean of the step, over that mean less the old one,
 // plus 1. 2 is of second order, but a root that starts suddenly then alternates between 0 and twice
 // its velocity for ever. 1.95 delays the root's acceleration by 0.013 dt.
@@ -73,8 +73,7 @@ Drive drive_open(Strand strand)
     return drive;
 }
 
-// Position relative to the root, and velocity relative to it, at the step's start.
-vec3 fetch_place(Strand strand, int j) { return fetch_position(strand, j) - strand.root_old; }
+// The velocity relative to the root at the step's start.
 vec3 fetch_speed(Strand strand, int j, Drive drive)
 {
     return fetch_velocity(strand, j) - drive.root_before;
@@ -174,7 +173,7 @@ float forward(Strand strand, Drive drive, bool solved)
     int last = LAST;
     for (int k = 0; k < last; ++k) {
         int j = k + 1;
-        vec3 q = fetch_place(strand, j), r = q - q_before, d;
+        vec3 q = fetch_position(strand, j), r = q - q_before, d;
         float l = fetch_rest(strand, j).w, tau;
         if (solved) {
             vec4 old = recall_move(j);
@@ -224,12 +223,12 @@ vec3 backward(Strand strand, Drive drive)
 {
     Front front = front_open();
     Moment moment = NO_MOMENT;
-    vec3 N = vec3(0.0), by_beyond = vec3(0.0), q = fetch_place(strand, LAST),
+    vec3 N = vec3(0.0), by_beyond = vec3(0.0), q = fetch_position(strand, LAST),
          style = style_of_tip(strand);
     float l_beyond = 0.0, share = rod_params.share;
     vec4 move = recall_move(LAST), rest_here = fetch_rest(strand, LAST);
     for (int j = LAST; j >= 1; --j) {
-        vec3 q_before = j > 1 ? fetch_place(strand, j - 1) : vec3(0.0);
+        vec3 q_before = j > 1 ? fetch_position(strand, j - 1) : vec3(0.0);
         vec4 move_before = j > 1 ? recall_move(j - 1) : vec4(0.0),
              rest_before = fetch_rest(strand, j - 1);
         float l = rest_here.w, stiff, mass = mass_at(strand, l, l_beyond, j);
@@ -282,7 +281,7 @@ vec3 backward(Strand strand, Drive drive)
 // The energy that a strand could gain by falling, and that of rounding errors, per rho A.
 float allowed_gain(Strand strand)
 {
-    float speed = NOISE * (strand.total_length + length(strand.root)) / strand.dt;
+    float speed = NOISE * strand.total_length / strand.dt;
     return strand.total_length *
            (ALLOWED * 0.5 * strand.total_length * length(strand.push) / step_params.gain +
             0.5 * speed * speed);
@@ -301,7 +300,7 @@ void finish(Strand strand, Drive drive, vec3 clamp_moment)
         vec4 rest_here = fetch_rest(strand, j), move = recall_move(j);
         float l = rest_here.w, l_beyond = j < last ? fetch_rest(strand, j + 1).w : 0.0, stiff,
               mass = mass_at(strand, l, l_beyond, j);
-        vec3 q = fetch_place(strand, j), v = fetch_speed(strand, j, drive), u = move.xyz;
+        vec3 q = fetch_position(strand, j), v = fetch_speed(strand, j, drive), u = move.xyz;
 #if STYLED
         style = next_style(style, rest_here, strand.rotation);
 #endif
@@ -315,7 +314,7 @@ void finish(Strand strand, Drive drive, vec3 clamp_moment)
         vec3 v_now = 2.0 / strand.dt * u - v;
         kinetic += 0.5 * mass * dot(v_now, v_now);
         velocities[at] = vec4(drive.root_after + v_now, move.w);
-        positions[at] = vec4(strand.root + (q + u), 1.0);
+        store_position(strand, at, q + u);
         q_before = q, u_before = u;
     }
     float gained = energy - energy_before + worked;
@@ -330,7 +329,7 @@ void finish(Strand strand, Drive drive, vec3 clamp_moment)
         gained -= paid;
     }
     if (!(gained > 0.0 && gained < 1e30)) gained = 0.0;
-    positions[strand.address] = vec4(strand.root, 1.0);
+    store_root(strand);
     velocities[strand.address] = vec4(drive.root_after, energy - gained);
 }
 

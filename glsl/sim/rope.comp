@@ -15,14 +15,12 @@
 //
 // Then v = (1 - damping) m/h, where m is the particle's whole displacement in the small step, by
 // flight and sweeps. m is not computed as x - q, with the position q before the flight: that
-// difference has the rounding error of x, 2^-24 X for coordinates of size X, in each small step,
-// while gravity contributes only g h^2. So each move is added to m as well as to x. (With 12,000
-// small steps a second and drag 1/s, the difference was off by 0.015 of the length after 2 s; the
-// sum is off by 4e-6.)
+// difference has the rounding error of x in each small step, while gravity contributes only g h^2.
+// So each move is added to m. (With 12,000 small steps a second and drag 1/s, the difference was
+// off by 0.015 of the length after 2 s; the sum is off by 4e-6.)
 //
-// For the same reason coordinates are relative to the root's position at the step's start: sweeps
-// see the rounding of x. (Five metres off the origin, 81 small steps in 1/60 s trembled by 0.0045
-// of their length a step.)
+// For the same reason the sweeps work on links, r = x_b - x_a, and not on positions: what moves an
+// end is added to its links.
 //
 // STYLED 1: after each flight particles are pulled towards the style (style_spring.h). A rope
 // stretches; stretch.glsl says how it is drawn.
@@ -39,12 +37,6 @@ vec3 mended(vec3 r, float l, float weights)
     float inverse = inversesqrt(max(dot(r, r), 1e-36));
     return r * ((l * inverse - 1.0) / (weights + rope_params.softness));
 #endif
-}
-
-// The root's position after `step` small steps.
-vec3 root_at(vec3 root_move, int step, int small_steps)
-{
-    return root_move * (float(step) / float(small_steps));
 }
 
 // In all small steps but the first, particle j moves by carried_share(j) m + fall_of(j) (Verlet
@@ -83,10 +75,10 @@ float pull_at(int j, bool first)
 #endif
 }
 
-void finish(int a, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
+void finish(int a, Root root, vec3 r, float l, vec3 moved, inout vec3 drawn, inout vec3 along)
 {
-    draw_link(a, r, l, moved * (rope_params.kept / step_params.dt), rope_params.stretch_drawn != 0u,
-              drawn, along);
+    draw_link(a, root, r, l, moved * (rope_params.kept / step_params.dt),
+              rope_params.stretch_drawn != 0u, drawn, along);
 }
 
 #if IN_REGISTERS
@@ -98,79 +90,83 @@ void main()
     if (s >= int(step_params.strand_count)) return;
     int base = strand_base(s);
     open_frame(s);
-    vec4 own = strand_root(base);
-    vec3 x[VERTICES], m[LAST], wind = strand_wind(own.xyz, root_position(own));
+    vec4 rest_root = strand_root(base), rotation = frame_rotation;
+    Root root = relative_root(frame_root(rest_root.xyz), rest_root.w),
+         root_old = relative_root(position_before(base).xyz, rest_root.w);
+    // r: link, m: displacement of the particle at its end
+    vec3 r[LAST], m[LAST], wind = strand_wind(rest_root.xyz, root.at);
     float l[LAST];
     int small_steps = rope_params.small_steps, sweeps = rope_params.sweeps;
-    vec4 root = strand_root(base), rotation = frame_rotation;
-    vec3 drawn = position_before(base).xyz, at = vec3(0.0), carry = root_move(root);
-    x[0] = root_at(carry, 1, small_steps);
+    vec3 drawn = vec3(0.0), carry = frame_move(rest_root.xyz) / float(small_steps);
 #if STYLED
-    vec3 style[VERTICES]; // relative to the root
+    vec3 style[VERTICES], at = vec3(0.0); // relative to the root
     style[0] = vec3(0.0);
 #endif
     for (int k = 0; k < LAST; ++k) {
         int j = k + 1, a = base + j * STRAND_TILE;
-        vec3 next = position_before(a).xyz;
+        vec3 next = relative_fetch(position_before(a), root_old);
         vec4 v = velocity_before(a);
         vec4 segment = texelFetch(rest, a);
         l[k] = segment.w;
-        at += link_before(drawn, next, l[k], v.w);
+        r[k] = link_before(drawn, next, l[k], v.w);
         drawn = next;
-        x[j] = at;
         m[k] = first_flight(j, v.xyz, wind);
 #if STYLED
+        at += r[k];
         style[j] = next_style(style[j - 1], segment, rotation);
-        m[k] += pull_at(j, true) * (x[0] + style[j] - (x[j] + m[k]));
+        m[k] += pull_at(j, true) * (style[j] - (at + (m[k] - carry)));
 #endif
     }
 
 #if BULLET
-    vec3 q[LAST]; // before the flight
-    for (int k = 0; k < LAST; ++k) q[k] = x[k + 1], x[k + 1] += m[k];
+    vec3 moved_before = carry;
+    for (int k = 0; k < LAST; ++k) r[k] += m[k] - moved_before, moved_before = m[k];
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        vec3 from = x[0];
+        vec3 push = vec3(0.0);
         for (int k = 0; k < LAST; ++k) {
-            vec3 push = mended(x[k + 1] - from, l[k], k == 0 ? 1.0 : 2.0);
-            if (k > 0) x[k] = from - push;
-            from = x[k + 1] + push;
+            vec3 link = r[k] - push;
+            float weights = k == 0 ? 1.0 : 2.0;
+            push = mended(link, l[k], weights);
+            if (k > 0) r[k - 1] -= push, m[k - 1] -= push;
+            r[k] = link + weights * push, m[k] += push;
         }
-        x[LAST] = from;
     }
-    for (int k = 0; k < LAST; ++k) m[k] = x[k + 1] - q[k];
 #else
     // The displacement in the first small step is known. A particle flies just before its first
     // link is corrected.
     for (int step = 0; step < small_steps; ++step) {
-        vec3 from = root_at(carry, step + 1, small_steps), gone = vec3(0.0), push = vec3(0.0);
-        x[0] = from;
+        vec3 gone = carry;
+#if STYLED
+        at = vec3(0.0);
+#endif
         for (int k = 0; k < LAST; ++k) {
             int j = k + 1;
+            float weights = k == 0 ? 1.0 : 2.0;
             vec3 move = step > 0 ? carried_share(j) * m[k] + fall_of(j, wind) : m[k];
 #if STYLED
-            move += (step > 0 ? pull_at(j, false) : 0.0) * (x[0] + style[j] - (x[j] + move));
+            at += r[k];
+            move += (step > 0 ? pull_at(j, false) : 0.0) * (style[j] - (at + (move - carry)));
 #endif
-            vec3 to = x[j] + move;
-            push = mended(to - from, l[k], k == 0 ? 1.0 : 2.0);
-            if (k > 0) x[k] = from - push, m[k - 1] = gone - push;
-            from = to + push, gone = move + push;
+            vec3 link = r[k] + (move - gone), push = mended(link, l[k], weights);
+            if (k > 0) r[k - 1] -= push, m[k - 1] = gone - push;
+            r[k] = link + weights * push, gone = move + push;
         }
-        x[LAST] = from, m[LAST - 1] = gone;
+        m[LAST - 1] = gone;
     }
 #endif
 
-    drawn = root_position(root);
+    drawn = vec3(0.0);
     vec3 along = rotate(rotation, texelFetch(rest, base + STRAND_TILE).xyz);
     carry_lead(base);
-    positions[base] = vec4(drawn, 1.0);
+    positions[base] = vec4(root.at, 0.0);
     for (int k = 0; k < LAST; ++k)
-        finish(base + (k + 1) * STRAND_TILE, x[k + 1] - x[k], l[k], m[k], drawn, along);
+        finish(base + (k + 1) * STRAND_TILE, root, r[k], l[k], m[k], drawn, along);
 }
 #else
 // Strands of any length: each dispatch (phase) is one sweep along the strand in scratch memory. A
 // particle flies just before its first link is corrected in a small step; after the very last sweep
 // it is drawn.
-layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: x; m
+layout(std430, binding = BIND_SCRATCH) buffer Scratch { vec4 scratch[]; }; // a particle: r; m
 
 void main()
 {
@@ -180,31 +176,31 @@ void main()
     bool loads = phase == 0, flies = phase == step * rope_params.sweeps,
          draws = phase + 1 == rope_params.small_steps * rope_params.sweeps;
     open_frame(s);
-    vec4 root = strand_root(a);
-    vec3 wind = strand_wind(root.xyz, root_position(root));
-    vec3 drawn_before = position_before(a).xyz, at = vec3(0.0);
-    vec3 x = root_at(root_move(root), step + 1, rope_params.small_steps), m = vec3(0.0),
-         style_at = x;
-    vec4 rotation = frame_rotation;
-    vec3 before = x, drawn = root_position(root),
-         along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    vec4 rest_root = strand_root(a), rotation = frame_rotation;
+    Root root = relative_root(frame_root(rest_root.xyz), rest_root.w),
+         root_old = relative_root(position_before(a).xyz, rest_root.w);
+    vec3 wind = strand_wind(rest_root.xyz, root.at),
+         carry = frame_move(rest_root.xyz) / float(rope_params.small_steps);
+    vec3 drawn_before = vec3(0.0), at = vec3(0.0), style_at = vec3(0.0), r = vec3(0.0), m = carry,
+         push = vec3(0.0);
+    vec3 drawn = vec3(0.0), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     float weights = 1.0, l = 0.0, l_before = 0.0;
     if (draws) {
         carry_lead(a);
-        positions[a] = vec4(drawn, 1.0);
+        positions[a] = vec4(root.at, 0.0);
     }
-    // Link j is corrected while j - 1 is in `x`, `m`; then j - 1 is finished.
+    // Link j is corrected while link j - 1 is in `r`, and the displacement of its end in `m`; then
+    // both of these are finished.
     for (int j = 1; j < n; ++j, a += STRAND_TILE) {
         int b = a + STRAND_TILE;
         vec3 next, next_m;
         vec4 segment = texelFetch(rest, b);
         l = segment.w;
         if (loads) {
-            vec3 to = position_before(b).xyz;
+            vec3 to = relative_fetch(position_before(b), root_old);
             vec4 v = velocity_before(b);
-            at += link_before(drawn_before, to, l, v.w);
+            next = link_before(drawn_before, to, l, v.w);
             drawn_before = to;
-            next = at;
             next_m = first_flight(j, v.xyz, wind);
         } else {
             next = scratch[2 * b].xyz;
@@ -213,29 +209,29 @@ void main()
         }
 #if STYLED
         style_at = next_style(style_at, segment, rotation);
-        if (flies) next_m += pull_at(j, loads) * (style_at - (next + next_m));
+        at += next;
+        if (flies) next_m += pull_at(j, loads) * (style_at - (at + (next_m - carry)));
 #endif
-        if (flies) next += next_m;
-        vec3 push = mended(next - x, l, weights);
+        next += flies ? next_m - m : -push;
+        push = mended(next, l, weights);
         if (j > 1) {
-            x -= push, m -= push;
+            r -= push, m -= push;
             if (draws) {
-                finish(a, x - before, l_before, m, drawn, along);
+                finish(a, root, r, l_before, m, drawn, along);
             } else {
-                scratch[2 * a] = vec4(x, 0.0);
+                scratch[2 * a] = vec4(r, 0.0);
                 scratch[2 * a + 1] = vec4(m, 0.0);
             }
-            before = x;
         }
-        x = next + push;
+        r = next + weights * push;
         m = next_m + push;
         l_before = l;
         weights = 2.0;
     }
     if (draws) {
-        finish(a, x - before, l, m, drawn, along);
+        finish(a, root, r, l, m, drawn, along);
     } else {
-        scratch[2 * a] = vec4(x, 0.0);
+        scratch[2 * a] = vec4(r, 0.0);
         scratch[2 * a + 1] = vec4(m, 0.0);
     }
 }

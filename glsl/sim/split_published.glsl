@@ -8,22 +8,22 @@
 
 vec3 fly(inout Strand strand)
 {
-    vec3 target = strand.position + strand.velocity * step_params.dt;
+    vec3 flown = strand.velocity * step_params.dt - strand.moved;
 #if THESIS
-    return target;
+    return strand.position + flown;
 #else
-    return land(strand, target, target - strand.root);
+    return land(strand, flown);
 #endif
 }
 
-vec3 drag_of(Strand strand) { return strand.root - strand.root_old; }
+vec3 drag_of(Strand strand) { return strand.moved; }
 
-void settle(inout Strand strand, vec3 end)
+void settle(inout Strand strand, vec3 target, vec3 end)
 {
 #if THESIS
-    strand.velocity = (end - strand.position) / step_params.dt;
+    strand.velocity = (end - strand.position + strand.moved) / step_params.dt;
     strand.position = end;
 #else
-    strand.position += strand.velocity * step_params.dt;
+    strand.position = target;
 #endif
 }

@@ -98,7 +98,7 @@ mat3 inverse_of_symmetric(mat3 m)
 }
 
 // From tip to root: stores C and S^{-1} (z + d) of each link.
-void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
+void eliminate(int base, int n, vec3 wind, vec3 root_velocity, Root root_old)
 {
     vec4 rotation = frame_rotation;
     float dt = step_params.dt, acts = dt * step_params.gain;
@@ -107,12 +107,13 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
     mat3 M = mat3(1.0);
     vec3 d = vec3(0.0);
     int at = base + (n - 1) * STRAND_TILE;
-    vec3 drawn = position_before(at).xyz;
+    vec3 drawn = relative_fetch(position_before(at), root_old);
     vec4 v = velocity_before(at);
     vec3 flying = kick_at(n - 1, v.xyz, wind);
     for (int j = n - 1; j > 0; --j, at -= STRAND_TILE) {
         vec4 style = texelFetch(rest, at), v_before = velocity_before(at - STRAND_TILE);
-        vec3 drawn_before = position_before(at - STRAND_TILE).xyz;
+        vec3 drawn_before =
+            j == 1 ? vec3(0.0) : relative_fetch(position_before(at - STRAND_TILE), root_old);
         vec3 flying_before = j == 1 ? root_velocity : kick_at(j - 1, v_before.xyz, wind);
         float l = style.w, m, b = min(angular * angular_at(j), 0.25 * p * l);
         vec3 r = link_before(drawn_before, drawn, l, v.w), flown = dt * (flying - flying_before);
@@ -140,17 +141,17 @@ void eliminate(int base, int n, vec3 wind, vec3 root_velocity)
 }
 
 // From root to tip: displacements, new links and velocities.
-void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
+void substitute(int base, int n, vec3 wind, vec3 root_velocity, Root root_old, Root root)
 {
     float dt = step_params.dt, per_second = 1.0 / step_params.dt;
-    vec3 drawn_before = position_before(base).xyz, flying_before = root_velocity,
-         x_before = vec3(0.0);
-    vec3 drawn = root, along = rotate(frame_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
+    vec3 drawn_before = vec3(0.0), flying_before = root_velocity, x_before = vec3(0.0);
+    vec3 drawn = vec3(0.0),
+         along = rotate(frame_rotation, texelFetch(rest, base + STRAND_TILE).xyz);
     carry_lead(base);
-    positions[base] = vec4(root, 1.0);
+    positions[base] = vec4(root.at, 0.0);
     for (int j = 1; j < n; ++j) {
         int a = base + j * STRAND_TILE;
-        vec3 was = position_before(a).xyz;
+        vec3 was = relative_fetch(position_before(a), root_old);
         vec4 v = velocity_before(a);
         float l = texelFetch(rest, a).w;
         vec3 flying = kick_at(j, v.xyz, wind);
@@ -158,7 +159,7 @@ void substitute(int base, int n, vec3 wind, vec3 root_velocity, vec3 root)
         vec4 before = vec4(x_before, 1.0);
         vec3 x = vec3(dot(scratch[3 * a], before), dot(scratch[3 * a + 1], before),
                       dot(scratch[3 * a + 2], before));
-        draw_link(a, s + (x - x_before), l, flying + per_second * x,
+        draw_link(a, root, s + (x - x_before), l, flying + per_second * x,
                   spring_params.stretch_drawn != 0u, drawn, along);
         drawn_before = was;
         flying_before = flying;
@@ -173,13 +174,15 @@ void main()
     if (strand >= int(step_params.strand_count)) return;
     int base = strand_base(strand);
     open_frame(strand);
-    vec4 root = strand_root(base);
-    vec3 wind = strand_wind(root.xyz, root_position(root));
-    vec3 root_velocity = root_move(root) / step_params.dt;
+    vec4 rest_root = strand_root(base);
+    Root root = relative_root(frame_root(rest_root.xyz), rest_root.w),
+         root_old = relative_root(position_before(base).xyz, rest_root.w);
+    vec3 wind = strand_wind(rest_root.xyz, root.at);
+    vec3 root_velocity = frame_move(rest_root.xyz) / step_params.dt;
     if (step_params.phase == 0u)
-        eliminate(base, n, wind, root_velocity);
+        eliminate(base, n, wind, root_velocity, root_old);
     else
-        substitute(base, n, wind, root_velocity, root_position(root));
+        substitute(base, n, wind, root_velocity, root_old, root);
 }
 #else
 // The force F above, of a link r = m u of length l.
@@ -208,20 +211,21 @@ void main()
     if (strand >= int(step_params.strand_count)) return;
     int a = strand_base(strand);
     open_frame(strand);
-    vec4 rotation = frame_rotation, root = strand_root(a);
-    vec3 wind = strand_wind(root.xyz, root_position(root)), fall = kick(vec3(0.0), wind);
+    vec4 rotation = frame_rotation, rest_root = strand_root(a);
+    Root root = relative_root(frame_root(rest_root.xyz), rest_root.w),
+         root_old = relative_root(position_before(a).xyz, rest_root.w);
+    vec3 wind = strand_wind(rest_root.xyz, root.at), fall = kick(vec3(0.0), wind);
     float dt = step_params.dt, gain = step_params.gain, decay = step_params.decay;
     Springs springs = springs_of(n - 1);
-    float softness = SHORT * root.w / float(n - 1); // e
-    vec3 was = position_before(a).xyz;
-    vec3 moved = root_move(root); // the root's displacement
-    vec3 drawn = root_position(root),
-         along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
+    float softness = SHORT * rest_root.w / float(n - 1); // e
+    vec3 was = vec3(0.0);
+    vec3 moved = frame_move(rest_root.xyz); // the root's displacement
+    vec3 drawn = vec3(0.0), along = rotate(rotation, texelFetch(rest, a + STRAND_TILE).xyz);
     vec3 r = vec3(0.0), force = vec3(0.0); // of the link before
     vec4 v = vec4(0.0);
     float l = 0.0;
     carry_lead(a);
-    positions[a] = vec4(drawn, 1.0);
+    positions[a] = vec4(root.at, 0.0);
     // The force of link j completes the force on particle j - 1.
     for (int j = 1; j <= n; ++j, a += STRAND_TILE) {
         vec4 style = vec4(0.0), next_v = vec4(0.0);
@@ -229,7 +233,8 @@ void main()
         if (j < n) {
             style = texelFetch(rest, a + STRAND_TILE);
             next_v = velocity_before(a + STRAND_TILE);
-            vec3 to = position_before(a + STRAND_TILE).xyz, t = rotate(rotation, style.xyz);
+            vec3 to = relative_fetch(position_before(a + STRAND_TILE), root_old),
+                 t = rotate(rotation, style.xyz);
             float m;
             next_r = link_before(was, to, style.w, next_v.w);
             vec3 u = direction_of(next_r, t, m);
@@ -243,8 +248,8 @@ void main()
 #else
             vec3 now = v.xyz * decay + fall + gain * (force - next_force);
 #endif
-            draw_link(a, r + (dt * now - moved), l, now, spring_params.stretch_drawn != 0u, drawn,
-                      along);
+            draw_link(a, root, r + (dt * now - moved), l, now, spring_params.stretch_drawn != 0u,
+                      drawn, along);
             moved = dt * now;
         }
         r = next_r;

@@ -9,7 +9,9 @@ UNIFORM_BLOCK(StepParams, step_params, BIND_STEP)
     vec4 head_translation_old; // xyz
     vec4 head_rotation;        // at the step's end
     vec4 head_translation;
-    vec4 gravity; // xyz, m/s^2
+    vec4 head_pivot; // xyz, m, a point near the roots, in the head's frame
+    vec4 head_move;  // xyz, m, the pivot's displacement in the step
+    vec4 gravity;    // xyz, m/s^2
     // xyz, m/s^2, BOUND 1: what the groom holds of it (solver.c), in the strand's frame of rest
     vec4 held;
     vec4 wind[4]; // xyz, m/s: four directions around the main one, mixed for each strand

@@ -27,7 +27,8 @@
 // definite. This turns no segment beyond the direction of the tension, for any lambda. Negative
 // lambda pushes along s. All this is done twice; if the second time moved along s, long loose
 // strands would gain half of the energy that they can release by falling. Then each segment gets
-// its exact length. v = (x - x_before)/dt.
+// its exact length. v = (x - x_before)/dt, where the displacement x - x_before is summed up from
+// the corrections: a difference of positions would have their rounding error.
 //
 // Exchange of velocity: the target of segment j+1 follows from segment j, but segment j feels no
 // reaction. So these forces have no potential, K of x'' = -K x is not symmetric, and its
@@ -40,13 +41,15 @@
 #include "sim/tressfx_params.h"
 
 // The strand is corrected in the head's frame with its root at the origin, where the style needs no
-// rotation. REST(j) is the direction and length of the style's segment j, X(j) the vertex.
-// Everything stays in memory: these loops with few accesses are as fast there as unrolled loops in
-// registers, and compile in a sixth of the time.
+// rotation. REST(j) is the direction and length of the style's segment j. During the step
+// `velocities` have the vertices' previous positions, FROM(j), and `positions` their displacements,
+// MOVE(j). Everything stays in memory: these loops with few accesses are as fast there as unrolled
+// loops in registers, and compile in a sixth of the time.
 int strand = 0, n = 0; // of the lane, set in main
-int address(int j) { return particle_address(strand, j, n); }
+int address(int j) { return particle_address(strand, j + LEAD, n + LEAD); }
 #define REST(j) texelFetch(rest, address(j))
-#define X(j)    positions[address(j)].xyz
+#define FROM(j) velocities[address(j)].xyz
+#define MOVE(j) positions[address(j)].xyz
 
 vec3 unit(vec3 v, vec3 otherwise)
 {
@@ -77,7 +80,9 @@ float global_at(int j)
 
 // The motion of the head in this step, in the head's frame at its end.
 struct Carried {
-    vec3 root_old, root; // in the world
+    Root root_old, root;
+    vec3 root_moved;     // in the world
+    vec3 first_moved;    // displacement of vertex 1
     vec3 first_old;      // old direction of the first segment, which is now REST(1)
     vec3 first_velocity; // of vertex 1 in the previous step
     float share;         // share of the root's rigid motion that moves the whole strand
@@ -85,17 +90,19 @@ struct Carried {
 
 Carried carried_by_head()
 {
-    vec4 root = texelFetch(rest, address(0)), first = REST(1), old = frame_rotation_old;
+    vec4 root = strand_root(address(0)), first = REST(1), old = frame_rotation_old;
     Carried carried;
-    carried.root_old = rotate(old, root.xyz) + frame_translation_old;
-    carried.root = root_position(root);
+    carried.root_old = relative_root(frame_root_old(root.xyz), root.w);
+    carried.root = relative_root(frame_root(root.xyz), root.w);
+    carried.root_moved = frame_move(root.xyz);
     vec3 first_old = rotate(old, first.xyz), first_new = rotate(frame_rotation, first.xyz);
     carried.first_old = rotate(conjugate(frame_rotation), first_old);
-    vec3 moved = carried.root - carried.root_old + first.w * (first_new - first_old);
+    vec3 moved = carried.root_moved + first.w * (first_new - first_old);
     carried.first_velocity = velocity_before(address(1)).xyz;
     vec3 jerk = moved - step_params.dt * carried.first_velocity;
     float threshold = tressfx_params.shock_threshold;
     carried.share = dot(jerk, jerk) > threshold * threshold ? 1.0 : tressfx_params.shock;
+    carried.first_moved = (1.0 - carried.share) * rotate(conjugate(frame_rotation), moved);
     velocities[address(1)] = vec4(moved / step_params.dt, 0.0); // for the jerk of the next step
     return carried;
 }
@@ -105,12 +112,11 @@ Carried carried_by_head()
 // frame of the long one, by more than it corrects.
 const float MOST_LEVER = 2.0;
 
-// Stores the predicted vertices in `positions` and their previous positions in `velocities`, both
-// in the head's frame.
+// Stores the predicted displacements and the previous positions, both in the head's frame.
 void predict(Carried carried)
 {
-    vec3 wind = strand_wind(texelFetch(rest, address(0)).xyz, carried.root),
-         root_old = carried.root_old, home = carried.root - carried.root_old;
+    vec3 wind = strand_wind(strand_root(address(0)).xyz, carried.root.at),
+         home = carried.root_moved;
     vec3 style = vec3(0.0), first = REST(1).xyz, first_old = carried.first_old;
     vec4 to_head = conjugate(frame_rotation);
     float dt = step_params.dt, global = tressfx_params.global_share,
@@ -125,46 +131,71 @@ void predict(Carried carried)
         int a = address(j);
         vec4 segment = REST(j);
         style += segment.w * segment.xyz;
-        vec3 from = rotate(to_head, position_before(a).xyz - root_old);
+        vec3 from = rotate(to_head, relative_fetch(position_before(a), carried.root_old));
 #if TRESSFX4
         vec3 v = velocity_before(a).xyz;
-        vec3 x = from + dt * rotate(to_head, v * step_params.decay + frame_gravity * dt);
-        if (float(j) < last_global) x = mix(x, style + home, global);
+        vec3 move = dt * rotate(to_head, v * step_params.decay + frame_gravity * dt);
+        if (float(j) < last_global) move += global * (style + home - (from + move));
 #else
         vec3 v = ahead;
         ahead = velocity_before(address(min(j + 1, n - 1))).xyz;
         float lever = min(1.0, MOST_LEVER * segment.w / REST(min(j + 1, n - 1)).w);
         vec3 given = (j + 1 < n ? exchanged * lever : 0.0) * (ahead - v);
         v += given, ahead -= given;
-        vec3 x = from + dt * rotate(to_head, kick_at(j, v, wind));
+        vec3 move = dt * rotate(to_head, kick_at(j, v, wind));
 #endif
-        x = mix(x - home, turn_between(first_old, first, x), share);
+        move = mix(move, turn_between(first_old, first, move), share);
         from = mix(from - home, turn_between(first_old, first, from), share);
 #if !TRESSFX4
-        if (float(j) < last_global) x = mix(x, style, global_at(j));
+        if (float(j) < last_global) move += global_at(j) * (style - (from + move));
 #endif
-        positions[a] = vec4(j < 2 ? style : x, 1.0);
+        positions[a] = vec4(move, 0.0);
         if (j > 1) velocities[a] = vec4(from, 0.0);
     }
-    positions[address(0)] = vec4(0.0, 0.0, 0.0, 1.0);
 }
 
-void keep_local_shape()
+// A vertex: its place and its displacement.
+struct Vertex {
+    vec3 x, move;
+};
+
+// Vertex 1, which the head carries.
+Vertex first_vertex(Carried carried)
 {
-    vec3 before = X(0), x = X(1);
+    vec4 first = REST(1);
+    return Vertex(first.w * first.xyz, carried.first_moved);
+}
+
+Vertex vertex_at(int j)
+{
+    vec3 move = MOVE(j);
+    return Vertex(FROM(j) + move, move);
+}
+
+void add_move(inout Vertex vertex, vec3 move) { vertex.x += move, vertex.move += move; }
+
+void keep_local_shape(Carried carried)
+{
+    vec3 before = vec3(0.0);
+    Vertex here = first_vertex(carried);
     vec4 rest_here = REST(1);
     for (int j = 1; j < n - 1; ++j) {
         vec4 rest_next = REST(j + 1);
-        vec3 wanted = rest_next.w *
-                      turn_between(rest_here.xyz, unit(x - before, rest_here.xyz), rest_next.xyz);
-        vec3 next = X(j + 1), gap = local_at(j + 1) * (x + wanted - next);
-        x = j > 1 ? x - gap * min(1.0, MOST_LEVER * rest_here.w / rest_next.w) : x;
-        X(j) = x;
-        before = x;
-        x = next + gap;
+        vec3 wanted =
+            rest_next.w *
+            turn_between(rest_here.xyz, unit(here.x - before, rest_here.xyz), rest_next.xyz);
+        Vertex next = vertex_at(j + 1);
+        vec3 gap = local_at(j + 1) * (here.x + wanted - next.x);
+        if (j > 1) {
+            add_move(here, -gap * min(1.0, MOST_LEVER * rest_here.w / rest_next.w));
+            MOVE(j) = here.move;
+        }
+        before = here.x;
+        here = next;
+        add_move(here, gap);
         rest_here = rest_next;
     }
-    X(n - 1) = x;
+    MOVE(n - 1) = here.move;
 }
 
 #if TRESSFX4
@@ -174,100 +205,127 @@ void keep_local_shape()
 // the clamp keeps a storm finite.
 void blow()
 {
-    vec4 root = texelFetch(rest, address(0));
-    vec3 wind = rotate(conjugate(frame_rotation), strand_wind(root.xyz, root_position(root)));
+    vec4 root = strand_root(address(0));
+    vec3 wind = rotate(conjugate(frame_rotation), strand_wind(root.xyz, frame_root(root.xyz)));
     float strength = 1e4 * step_params.dt * step_params.dt, most = tressfx_params.most_move;
     if (dot(wind, wind) == 0.0) return;
     for (int j = 2; j < n - 1; ++j) {
-        vec3 t = X(j + 1) - X(j), blown = strength * cross(cross(t, wind), t);
+        vec3 t = vertex_at(j + 1).x - vertex_at(j).x, blown = strength * cross(cross(t, wind), t);
         float square = dot(blown, blown);
-        X(j) += square > most * most ? blown * (most * inversesqrt(square)) : blown;
+        MOVE(j) += square > most * most ? blown * (most * inversesqrt(square)) : blown;
     }
 }
 
-void keep_edge(inout vec3 a, inout vec3 b, float rest_length, float share_a, float share_b)
+void keep_edge(inout Vertex a, inout Vertex b, float rest_length, float share_a, float share_b)
 {
-    vec3 edge = b - a;
+    vec3 edge = b.x - a.x;
     vec3 excess = edge * (1.0 - rest_length / max(length(edge), 1e-9));
-    a += share_a * excess;
-    b -= share_b * excess;
+    add_move(a, share_a * excess);
+    add_move(b, -share_b * excess);
 }
 
 // Corrects the even edges (0 1), (2 3) .. and the odd edges (1 2), (3 4) .. in one sweep: an odd
 // edge follows as soon as the even edges on both sides are done. The head holds vertices 0 and 1.
-void keep_lengths()
+void keep_lengths(Carried carried)
 {
-    vec3 b = X(1); // end of the previous even edge
+    Vertex b = first_vertex(carried); // end of the previous even edge
     for (int j = 2; j < n; j += 2) {
-        vec3 c = X(j), d = X(min(j + 1, n - 1));
+        Vertex c = vertex_at(j), d = vertex_at(min(j + 1, n - 1));
         if (j + 1 < n) keep_edge(c, d, REST(min(j + 1, n - 1)).w, 0.5, 0.5);
         keep_edge(b, c, REST(j).w, j > 2 ? 0.5 : 0.0, j > 2 ? 0.5 : 1.0);
-        X(j - 1) = b;
-        X(j) = c;
+        if (j > 2) MOVE(j - 1) = b.move;
+        MOVE(j) = c.move;
         b = d;
     }
-    if ((n & 1) == 0) X(n - 1) = b;
+    if ((n & 1) == 0) MOVE(n - 1) = b.move;
 }
 
 #else
 
+// A segment: r before the step, its change e, s = r + e, and its length. Before the step it may
+// have been too short (`off`), because the head turned and took a share of the strand along.
+struct Segment {
+    vec3 r, e, s;
+    float size, off;
+};
+
+Segment segment_between(vec3 from, vec3 move, vec3 from_before, vec3 move_before, float l,
+                        float longest)
+{
+    vec3 r = from - from_before, e = move - move_before, s = r + e;
+    return Segment(r, e, s, length(s), relative_off(r, l, longest));
+}
+
 // The rows of J J^T lambda = |s| (|s| - l), eliminated from the root on.
 struct Rows {
-    vec3 before, s;         // the previous vertex, and the segment from it
+    vec3 from, move, s;     // the previous vertex, and the segment that ends there
     float per_pivot, right; // of the previous row
 };
 
-Rows open_rows() { return Rows(X(1), vec3(0.0), 0.0, 0.0); }
-
-// Eliminates the row of the segment that ends in vertex j at x, and returns its right-hand side,
-// which the caller stores in the fourth component of `positions`. Stores the elimination factor in
-// that of `velocities`.
-float add_row(inout Rows rows, int j, vec3 x)
+Rows open_rows(Carried carried)
 {
-    vec3 s = x - rows.before;
-    float square = dot(s, s), off = -dot(s, rows.s);
+    Vertex first = first_vertex(carried);
+    return Rows(first.x - first.move, first.move, vec3(0.0), 0.0, 0.0);
+}
+
+// Eliminates the row of the segment that ends in vertex j, which has moved by `move`, and returns
+// its right-hand side, which the caller stores in the fourth component of `positions`. Stores the
+// elimination factor in that of `velocities`.
+float add_row(inout Rows rows, int j, vec3 move, float longest)
+{
+    vec3 from = FROM(j);
+    float l = REST(j).w;
+    Segment segment = segment_between(from, move, rows.from, rows.move, l, longest);
+    float longer = relative_longer(segment.r, segment.e, l, segment.size, segment.off);
+    float square = dot(segment.s, segment.s), off = -dot(segment.s, rows.s);
     float diagonal = j == 2 ? square : 2.0 * square, factor = off * rows.per_pivot;
     float pivot = max(diagonal - off * factor, 1e-6 * diagonal);
     float per_pivot = pivot > 1e-30 ? 1.0 / pivot : 0.0;
-    float right = (square - sqrt(square) * REST(j).w - off * rows.right) * per_pivot;
+    float right = (segment.size * longer - off * rows.right) * per_pivot;
     velocities[address(j)].w = factor;
-    rows = Rows(x, s, per_pivot, right);
+    rows = Rows(from, move, segment.s, per_pivot, right);
     return right;
 }
 
 // From the tip on: solves for lambda of each segment and at the same time eliminates the row of (I
-// + K) y = x. The diagonal is summed like a ladder of resistors with one resistor to ground at each
-// vertex, own_j = 1 + own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs no
-// subtraction. Stores y_j = xyz + w y_{j-1}.
-void pull_together()
+// + K) y = x, for the displacements: with y = from + m, (I + K) m = x - from - K from. The diagonal
+// is summed like a ladder of resistors with one resistor to ground at each vertex, own_j = 1 +
+// own_{j+1} lambda_{j+1}/(own_{j+1} + lambda_{j+1}), which needs no subtraction. Stores m_j = xyz +
+// w m_{j-1}.
+void pull_together(Carried carried)
 {
     float lambda = 0.0, factor = 0.0, own = 0.0, share = 0.0;
-    vec3 x = X(n - 1), kept = vec3(0.0), pushed = vec3(0.0);
+    Vertex first = first_vertex(carried);
+    vec3 move = MOVE(n - 1), from = FROM(n - 1), kept = vec3(0.0), pushed = vec3(0.0);
     for (int j = n - 1; j >= 2; --j) {
         int a = address(j);
         lambda = positions[a].w - factor * lambda;
-        vec3 next = X(j - 1), push = min(lambda, 0.0) * (x - next);
-        kept = x - push + pushed + share * kept;
+        vec3 next_move = j > 2 ? MOVE(j - 1) : first.move,
+             next_from = j > 2 ? FROM(j - 1) : first.x - first.move;
+        float tension = max(lambda, 0.0);
+        vec3 r = from - next_from, push = lambda * r + (lambda - tension) * (move - next_move);
+        kept = move - push + pushed + share * kept;
         own = 1.0 + share * own;
-        float tension = max(lambda, 0.0), per_pivot = 1.0 / (own + tension);
+        float per_pivot = 1.0 / (own + tension);
         share = tension * per_pivot;
         positions[a] = vec4(per_pivot * kept, share);
-        factor = velocities[a].w, x = next, pushed = push;
+        factor = velocities[a].w, move = next_move, from = next_from, pushed = push;
     }
 }
 
-void keep_lengths()
+void keep_lengths(Carried carried)
 {
-    Rows rows = open_rows();
-    for (int j = 2; j < n; ++j) positions[address(j)].w = add_row(rows, j, X(j));
-    pull_together();
-    rows = open_rows();
+    float longest = strand_root(address(0)).w;
+    Rows rows = open_rows(carried);
+    for (int j = 2; j < n; ++j) positions[address(j)].w = add_row(rows, j, MOVE(j), longest);
+    pull_together(carried);
+    rows = open_rows(carried);
     for (int j = 2; j < n; ++j) {
         vec4 pulled = positions[address(j)];
-        vec3 x = pulled.xyz + pulled.w * rows.before;
-        positions[address(j)] = vec4(x, add_row(rows, j, x));
+        vec3 move = pulled.xyz + pulled.w * rows.move;
+        positions[address(j)] = vec4(move, add_row(rows, j, move, longest));
     }
-    pull_together();
+    pull_together(carried);
 }
 
 #endif
@@ -277,36 +335,42 @@ void finish(Carried carried)
 {
     vec4 to_world = frame_rotation;
     float dt = step_params.dt, most = tressfx_params.most_move;
-    vec3 x = vec3(0.0), before = vec3(0.0), along = vec3(0.0), world = carried.root;
-    positions[address(0)] = vec4(carried.root, 1.0);
+    Vertex first = first_vertex(carried);
+    vec3 moved = first.move, world = rotate(to_world, first.x);
+#if !TRESSFX4
+    float longest = strand_root(address(0)).w;
+    vec3 from_before = first.x - first.move, move_before = first.move;
+#endif
+    positions[address(0)] = vec4(carried.root.at, 0.0);
     velocities[address(0)] = vec4(0.0);
-    for (int j = 1; j < n; ++j) {
+    positions[address(1)] = relative_store(world, carried.root);
+    for (int j = 2; j < n; ++j) {
         int a = address(j);
         vec4 now = positions[a];
+        vec3 from = velocities[a].xyz;
 #if TRESSFX4
-        x = now.xyz;
+        moved = now.xyz;
+        world = rotate(to_world, from + moved);
 #else
-        vec4 segment = REST(j);
-        vec3 here = j > 1 ? now.xyz + now.w * before : now.xyz;
-        along = unit(here - before, segment.xyz);
-        x += segment.w * along;
-        // Summing rotated segments; rotating x would cause rounding errors larger than a short
-        // segment permits.
-        world += segment.w * rotate(to_world, along);
-        before = here;
+        vec4 style = REST(j);
+        float l = style.w;
+        vec3 move = now.xyz + now.w * move_before;
+        Segment segment = segment_between(from, move, from_before, move_before, l, longest);
+        vec3 along = unit(segment.s, style.xyz);
+        moved += relative_turn(segment.r, segment.e, l, segment.size, segment.off, along);
+        // Summing rotated segments; rotating the sum would cause rounding errors larger than a
+        // short segment permits.
+        world += l * rotate(to_world, along);
+        from_before = from, move_before = move;
 #endif
-        vec3 moved = x - velocities[a].xyz;
         float square = dot(moved, moved), limit = most * most;
 #if TRESSFX4
         float kept = square > limit ? limit / square : 1.0;
 #else
         float kept = square > limit ? most * inversesqrt(square) : 1.0;
 #endif
-        if (j > 1) velocities[a] = vec4(rotate(to_world, moved * (kept / dt)), 0.0);
-#if TRESSFX4
-        world = carried.root + rotate(to_world, x);
-#endif
-        positions[a] = vec4(world, 1.0);
+        velocities[a] = vec4(rotate(to_world, moved * (kept / dt)), 0.0);
+        positions[a] = relative_store(world, carried.root);
     }
 }
 
@@ -317,15 +381,16 @@ void main()
     n = int(step_params.vertex_count);
     open_frame(strand);
     Carried carried = carried_by_head();
+    carry_lead(address(0));
     predict(carried);
     int local_passes = n > 2 ? tressfx_params.local_passes : 0;
-    for (int i = 0; i < local_passes; ++i) keep_local_shape();
+    for (int i = 0; i < local_passes; ++i) keep_local_shape(carried);
 #if TRESSFX4
     blow();
     int length_passes = tressfx_params.length_passes;
-    for (int i = 0; i < length_passes; ++i) keep_lengths();
+    for (int i = 0; i < length_passes; ++i) keep_lengths(carried);
 #else
-    keep_lengths();
+    keep_lengths(carried);
 #endif
     // TressFX pushes vertices out of capsules at this point; here the collision pass does.
     finish(carried);

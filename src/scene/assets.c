@@ -32,6 +32,12 @@ static void warn_ignored(const Strands *strands, const char *file, FILE *message
     if (strands->both_ends_fixed)
         fprintf(messages, "%s: the file fixes both ends of its strands; here the tips move\n",
                 quote(file).text);
+    uint32_t loose = strands_held_elsewhere(strands);
+    if (loose)
+        fprintf(messages,
+                "%s: %u strands have mobility 0 behind vertices that may move; only those next to "
+                "the root move with the head\n",
+                quote(file).text, loose);
 }
 
 static Result take_given(Assets *assets, uint32_t i, const Strands *given, Error *error)

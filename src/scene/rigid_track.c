@@ -100,32 +100,36 @@ RigidMotion rigid_samples_evaluate(const RigidSamples *samples, double time)
     return rigid_motion_product(&way, at);
 }
 
-// Applies the samples' motion, then the track's.
-static void add_samples(const RigidSamples *samples, double time, const double quaternion[4],
-                        const double place[3], float rotation[4], float translation[3])
+// The track's motion, applied after that of its samples.
+static RigidMotion motion_at(const RigidTrack *track, double time)
 {
-    RigidMotion track, sampled = rigid_samples_evaluate(samples, time);
-    memcpy(track.rotation, quaternion, sizeof track.rotation);
-    memcpy(track.translation, place, sizeof track.translation);
-    RigidMotion all = rigid_motion_product(&track, &sampled);
-    for (int i = 0; i < 4; i++) rotation[i] = (float)all.rotation[i];
-    for (int i = 0; i < 3; i++) translation[i] = (float)all.translation[i];
+    float moved[3] = {0}, turned[3] = {0};
+    if (track_is_given(&track->translation)) track_evaluate(&track->translation, time, moved);
+    if (track_is_given(&track->rotation)) track_evaluate(&track->rotation, time, turned);
+    RigidMotion motion;
+    double pivot[3];
+    quaternion_from_vector(turned, motion.rotation);
+    rotate(motion.rotation, track->pivot, pivot);
+    for (int i = 0; i < 3; i++)
+        motion.translation[i] = (double)track->pivot[i] - pivot[i] + (double)moved[i];
+    if (!track->samples) return motion;
+    RigidMotion sampled = rigid_samples_evaluate(track->samples, time);
+    return rigid_motion_product(&motion, &sampled);
 }
 
 void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4],
                           float translation[3])
 {
-    float moved[3] = {0}, turned[3] = {0};
-    if (track_is_given(&track->translation)) track_evaluate(&track->translation, time, moved);
-    if (track_is_given(&track->rotation)) track_evaluate(&track->rotation, time, turned);
-    double quaternion[4], pivot[3];
-    quaternion_from_vector(turned, quaternion);
-    rotate(quaternion, track->pivot, pivot);
-    for (int i = 0; i < 4; i++) rotation[i] = (float)quaternion[i];
-    double place[3];
-    for (int i = 0; i < 3; i++) place[i] = (double)track->pivot[i] - pivot[i] + (double)moved[i];
-    for (int i = 0; i < 3; i++) translation[i] = (float)place[i];
-    if (track->samples) add_samples(track->samples, time, quaternion, place, rotation, translation);
+    RigidMotion motion = motion_at(track, time);
+    for (int i = 0; i < 4; i++) rotation[i] = (float)motion.rotation[i];
+    for (int i = 0; i < 3; i++) translation[i] = (float)motion.translation[i];
+}
+
+void rigid_track_place(const RigidTrack *track, double time, const float point[3], double place[3])
+{
+    RigidMotion motion = motion_at(track, time);
+    rotate(motion.rotation, point, place);
+    for (int i = 0; i < 3; i++) place[i] += motion.translation[i];
 }
 
 bool rigid_track_is_still(const RigidTrack *track)

@@ -39,6 +39,10 @@ extern const TrackRange RIGID_TRACK_METRES, RIGID_TRACK_DEGREES;
 void rigid_track_evaluate(const RigidTrack *track, double time, float rotation[4],
                           float translation[3]);
 
+// Where the motion takes `point` (m), in double precision: `translation` above is rounded by more
+// than a short step moves a body that is far from the origin.
+void rigid_track_place(const RigidTrack *track, double time, const float point[3], double place[3]);
+
 // Whether the body stays at one place.
 bool rigid_track_is_still(const RigidTrack *track);
 

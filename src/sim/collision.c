@@ -204,7 +204,6 @@ static CollideParams step_params(const Collision *collision, const SolverStep *s
         .margin = collision->params->collision_margin,
         .friction = collision->params->friction,
         .longest = collision->bounds->longest,
-        .carried = collision->carried,
     };
     if (collision->field) {
         memcpy(params.field_low, collision->field->low, sizeof collision->field->low);
@@ -255,6 +254,7 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     const HairBatch *hair = &collision->hair->batches[batch];
     collision->step.strand_count = hair->strand_count;
     collision->step.vertex_count = hair->vertex_count;
+    collision->step.carried = hair->held > collision->carried ? hair->held : collision->carried;
     if (hair->rest.texture) gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);

@@ -5,28 +5,48 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Strand numbers sorted by vertex count. Strands with equal counts keep the file's order.
+// Strand numbers sorted by vertex count, then by the number of held vertices. Strands in which both
+// are equal keep the file's order.
 typedef struct Order {
     uint32_t *strand;
     uint32_t count;
 } Order;
 
-static Result order_by_size(Order *order, const Strands *strands, Error *error)
+// One pass of a radix sort: orders the strands by `key`, at most `most`.
+static bool order_by(Order *order, const Strands *strands, uint32_t most,
+                     uint32_t (*key)(const Strands *strands, uint32_t s))
+{
+    uint32_t *sorted = malloc(((size_t)order->count + 1) * sizeof *sorted),
+             *start = calloc((size_t)most + 2, sizeof *start);
+    bool good = sorted && start;
+    if (good) {
+        for (uint32_t s = 0; s < order->count; ++s) ++start[key(strands, s) + 1];
+        for (uint32_t n = 0; n <= most; ++n) start[n + 1] += start[n];
+        for (uint32_t i = 0; i < order->count; ++i)
+            sorted[start[key(strands, order->strand[i])]++] = order->strand[i];
+        memcpy(order->strand, sorted, order->count * sizeof *sorted);
+    }
+    free(start);
+    free(sorted);
+    return good;
+}
+
+static uint32_t size_of(const Strands *strands, uint32_t s)
+{
+    return strands_size(strands, s);
+}
+
+static Result order_strands(Order *order, const Strands *strands, Error *error)
 {
     uint32_t most = 0;
-    for (uint32_t s = 0; s < strands->strand_count; ++s)
-        if (strands_size(strands, s) > most) most = strands_size(strands, s);
     order->count = strands->strand_count;
     order->strand = malloc(((size_t)order->count + 1) * sizeof *order->strand);
-    uint32_t *start = calloc((size_t)most + 2, sizeof *start);
-    if (order->strand && start) {
-        for (uint32_t s = 0; s < order->count; ++s) ++start[strands_size(strands, s) + 1];
-        for (uint32_t n = 0; n <= most; ++n) start[n + 1] += start[n];
-        for (uint32_t s = 0; s < order->count; ++s)
-            order->strand[start[strands_size(strands, s)]++] = s;
+    for (uint32_t s = 0; s < order->count && order->strand; ++s) {
+        order->strand[s] = s;
+        if (strands_size(strands, s) > most) most = strands_size(strands, s);
     }
-    bool good = order->strand && start;
-    free(start);
+    bool good = order->strand && order_by(order, strands, most, strands_held) &&
+                order_by(order, strands, most, size_of);
     return good ? RESULT_OK
                 : error_set(error, RESULT_FAILED, "no memory for %u strands", order->count);
 }
@@ -36,15 +56,17 @@ static uint32_t slots_of(uint32_t strands)
     return hair_slots(&(HairBatch){.strand_count = strands});
 }
 
-// The end of the batch that begins at `begin`. A batch has one vertex count, and a buffer must hold
-// what a solver stores for it.
+// The end of the batch that begins at `begin`. A batch has one vertex count and one number of held
+// vertices, and a buffer must hold what a solver stores for it.
 static uint32_t batch_end(const Order *order, const Strands *strands, uint32_t begin,
                           const GpuLimits *limits)
 {
-    uint32_t n = strands_size(strands, order->strand[begin]), end = begin;
+    uint32_t n = strands_size(strands, order->strand[begin]),
+             held = strands_held(strands, order->strand[begin]), end = begin;
     int64_t texels = limits->storage_block / (16 * HAIR_MOST_SCRATCH);
     if (limits->texture_texels < texels) texels = limits->texture_texels;
     while (end < order->count && strands_size(strands, order->strand[end]) == n &&
+           strands_held(strands, order->strand[end]) == held &&
            (int64_t)slots_of(end - begin + 1) * n <= texels)
         ++end;
     return end;
@@ -61,7 +83,7 @@ static void fill_strand(Float4 *rest, Float4 *position, const HairBatch *batch, 
     for (uint32_t j = 0; j < batch->vertex_count; ++j) {
         size_t at = hair_address(batch, slot, j);
         memcpy(position[at], q[j], sizeof q[j]);
-        position[at][3] = 1;
+        position[at][3] = 0;
         if (j == 0) continue;
         double r[3], length = 0;
         for (int k = 0; k < 3; ++k)
@@ -129,6 +151,7 @@ static Result create_batches(Hair *hair, const Strands *strands, const Order *or
         HairBatch *batch = &hair->batches[hair->batch_count++];
         *batch = (HairBatch){.vertex_count = n,
                              .strand_count = end - begin,
+                             .held = strands_held(strands, order->strand[begin]),
                              .strand = malloc((end - begin) * sizeof *batch->strand)};
         if (!batch->strand) return error_set(error, RESULT_FAILED, "no memory for a batch");
         memcpy(batch->strand, &order->strand[begin], (end - begin) * sizeof *batch->strand);
@@ -172,7 +195,7 @@ Result hair_create(Hair *hair, const Strands *strands, uint32_t first_id, const 
     strands_bounds(strands, hair->low, hair->high);
     measure_lengths(hair, strands);
     Order order = {0};
-    Result result = order_by_size(&order, strands, error);
+    Result result = order_strands(&order, strands, error);
     THEN(result, create_batches(hair, strands, &order, first_id, limits, error));
     free(order.strand);
     if (result != RESULT_OK) hair_destroy(hair);
@@ -223,7 +246,7 @@ Result hair_write_positions(const Hair *hair, const float (*positions)[3], Error
             for (uint32_t j = 0; j < batch->vertex_count; ++j) {
                 float *at = written[hair_address(batch, slot, j)];
                 memcpy(at, positions[(size_t)s * batch->vertex_count + j], sizeof *positions);
-                at[3] = 1;
+                at[3] = 0;
             }
         }
         gpu_buffer_write(&batch->position, 0, written, batch->position.size);

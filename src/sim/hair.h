@@ -16,10 +16,12 @@
 typedef struct HairBatch {
     uint32_t vertex_count; // of each strand, >= 2
     uint32_t strand_count;
+    uint32_t held; // vertices of each strand, from the root, that its mobility holds (strands_held)
     // [strand_count], owned: the number in the file of the strand, or of a follower's guide. May be
     // NULL.
     uint32_t *strand;
-    // vec4 a particle: xyz in metres in the world, w = 1. These positions are drawn.
+    // vec4 a particle: xyz in metres in the world. These positions are drawn. w: what a solver
+    // keeps of the position beyond the precision of xyz (glsl/sim/relative.glsl); 0: nothing.
     GpuBuffer position;
     // vec4 a particle, the style in the head's frame. j = 0: root and the strand's length (m);
     // j > 0: unit direction of the segment from j - 1 to j and its rest length (m).

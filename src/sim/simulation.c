@@ -247,6 +247,11 @@ static SolverStep next_step(const Simulation *simulation, const MovingBody *body
         .shape_old = bound_body_shape(&body->mesh, before),
         .shape = bound_body_shape(&body->mesh, after),
     };
+    double from[3], to[3];
+    rigid_track_place(&body->of->head, before, body->middle, from);
+    rigid_track_place(&body->of->head, after, body->middle, to);
+    step_set_move(&step, body->middle,
+                  (double[]){to[0] - from[0], to[1] - from[1], to[2] - from[2]});
     memcpy(step.gravity, forces.gravity, sizeof step.gravity);
     memcpy(step.wind, forces.wind, sizeof step.wind);
     return step;
@@ -324,6 +329,7 @@ static void carry_along(Simulation *simulation, MovingBody *body, SolverStep *st
     motion = head_motion_between(&step->head_old, &carried);
     carry_sections(simulation, body, &motion, &carried);
     step->head_old = carried;
+    memset(step->move_lost, 0, sizeof step->move_lost);
     step->shape_old = step->shape;
     ++simulation->jumps;
 }

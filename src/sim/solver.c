@@ -184,6 +184,7 @@ static Result build_programs(SolverState *state, const SolverSetup *setup, Error
         .shape = recipe->shape,
         .most_vertices = recipe->most_vertices,
         .lead = recipe->carried < 2 && state->params->clamped > 1,
+        .carried = recipe->carried,
         .sheltered = setup->sheltered,
         .varies = has_particles(state) && state->varies,
         .styled = state->params->style > 0 && state->params->style_stiffness > 0,
@@ -422,16 +423,19 @@ static void bind_frames(const SolverState *state, uint32_t batch)
     if (state->frames) gpu_buffer_bind_texture(&state->frames[batch], BIND_FRAMES);
 }
 
+static void write_batch_pose(SolverState *state, uint32_t i, const HeadPose *head)
+{
+    along_bind(&state->along, i);
+    bind_frames(state, i);
+    pose_write(&state->pose, &state->hair->batches[i],
+               has_segments(state) ? &state->batches[i].state : NULL,
+               has_segments(state) ? state->programs.leads[i] : 0, head);
+}
+
 static void write_pose(SolverState *state, const HeadPose *head)
 {
     state->pose.held = held_share(state);
-    for (uint32_t i = 0; i < state->hair->batch_count; ++i) {
-        along_bind(&state->along, i);
-        bind_frames(state, i);
-        pose_write(&state->pose, &state->hair->batches[i],
-                   has_segments(state) ? &state->batches[i].state : NULL,
-                   has_segments(state) ? state->programs.leads[i] : 0, head);
-    }
+    for (uint32_t i = 0; i < state->hair->batch_count; ++i) write_batch_pose(state, i, head);
 }
 
 void solver_pose(const Solver *solver, const HeadPose *head)
@@ -448,10 +452,14 @@ void solver_pose(const Solver *solver, const HeadPose *head)
     gpu_timer_end(state->timer);
 }
 
-static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms)
+static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms, const HeadPose *head)
 {
     const HairBatch *hair = &state->hair->batches[i];
     const SolverBatch *batch = &state->batches[i];
+    if (hair->held == hair->vertex_count) { // the head carries whole strands
+        if (has_particles(state)) write_batch_pose(state, i, head);
+        return;
+    }
     uniforms->strand_count = hair->strand_count;
     uniforms->vertex_count = hair->vertex_count - state->programs.leads[i];
     gpu_uniforms_set(BIND_STEP, uniforms, sizeof *uniforms);
@@ -506,7 +514,8 @@ static void step_part(SolverState *state, const SolverStep *step, int part, int 
                      : 1;
     for (int phase = 0; phase < phases; ++phase) {
         uniforms.phase = (uint32_t)phase;
-        for (uint32_t i = 0; i < state->hair->batch_count; ++i) dispatch(state, i, &uniforms);
+        for (uint32_t i = 0; i < state->hair->batch_count; ++i)
+            dispatch(state, i, &uniforms, &step->head);
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     }
     if (!collision_begin(&state->collision, step, part, count)) return;
@@ -526,6 +535,7 @@ void solver_step(const Solver *solver, const SolverStep *whole)
     SolverStep step = *whole;
     int count = solver_substeps(solver, whole);
     step.dt = whole->dt / count;
+    for (int k = 0; k < 3; ++k) step.move_lost[k] /= (float)count;
     for (int part = 1; part <= count; ++part) {
         step.head = head_between(&whole->head_old, &whole->head, (float)part / (float)count);
         step.frame_old = (float)(part - 1) / (float)count;

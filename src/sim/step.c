@@ -15,6 +15,39 @@ static void carry(const HeadPose *head, const float point[3], vec3 carried)
     glm_vec3_add((float *)head->translation, carried, carried);
 }
 
+// A rotation is applied as q v + 2 q.xyz x (q.xyz x v + q.w v) in double precision.
+static void carry_exactly(const HeadPose *head, const float point[3], double carried[3])
+{
+    double q[4], v[3], t[3];
+    for (int i = 0; i < 4; ++i) q[i] = (double)head->rotation[i];
+    for (int i = 0; i < 3; ++i) v[i] = (double)point[i];
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        t[i] = q[j] * v[k] - q[k] * v[j] + q[3] * v[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        carried[i] = v[i] + 2 * (q[j] * t[k] - q[k] * t[j]) + (double)head->translation[i];
+    }
+}
+
+// The move of the pivot by the step's poses, as they are rounded.
+static void rounded_move(const SolverStep *step, double move[3])
+{
+    double old[3];
+    carry_exactly(&step->head_old, step->pivot, old);
+    carry_exactly(&step->head, step->pivot, move);
+    for (int k = 0; k < 3; ++k) move[k] -= old[k];
+}
+
+void step_set_move(SolverStep *step, const float pivot[3], const double move[3])
+{
+    double rounded[3];
+    memcpy(step->pivot, pivot, sizeof step->pivot);
+    rounded_move(step, rounded);
+    for (int k = 0; k < 3; ++k) step->move_lost[k] = (float)(move[k] - rounded[k]);
+}
+
 void step_shelter(SolverStep *step, const float middle[3], float share)
 {
     vec3 old = {0};
@@ -36,6 +69,12 @@ StepParams step_uniforms(const SolverStep *step, const SectionParams *params)
     StepParams uniforms = {.dt = (float)step->dt, .drag = params->drag};
     head_put(uniforms.head_rotation_old, uniforms.head_translation_old, &step->head_old);
     head_put(uniforms.head_rotation, uniforms.head_translation, &step->head);
+    double move[3];
+    rounded_move(step, move);
+    for (int k = 0; k < 3; ++k) {
+        uniforms.head_pivot[k] = step->pivot[k];
+        uniforms.head_move[k] = (float)(move[k] + (double)step->move_lost[k]);
+    }
     uniforms.frame_old = step->frame_old;
     uniforms.frame_now = step->frame_now;
     memcpy(uniforms.gravity, step->gravity, sizeof step->gravity);
@@ -109,18 +148,27 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
 }
 
 // Whether the strands can stay in registers during a step. They must have at most `most` vertices,
-// and at most MOST_COUNTS different vertex counts, because each count costs a compilation (0.2 to
-// 0.7 s on a CPU driver).
-static bool fits_registers(const Hair *hair, uint32_t most)
+// and at most MOST_COUNTS different numbers of vertices and leads, because each costs a compilation
+// (0.2 to 0.7 s on a CPU driver).
+static bool fits_registers(const Hair *hair, const uint32_t *leads, uint32_t most)
 {
     enum { MOST_COUNTS = 2 };
-    uint32_t counts = 0, last = 0;
+    uint32_t counts = 0, last = 0, last_lead = 0;
     for (uint32_t i = 0; i < hair->batch_count; ++i) {
         if (hair->batches[i].vertex_count > most) return false;
-        counts += hair->batches[i].vertex_count != last;
-        last = hair->batches[i].vertex_count;
+        counts += hair->batches[i].vertex_count != last || leads[i] != last_lead;
+        last = hair->batches[i].vertex_count, last_lead = leads[i];
     }
     return counts <= MOST_COUNTS;
+}
+
+static uint32_t lead_of(const HairBatch *batch, const StepProgramsOptions *options)
+{
+    uint32_t n = batch->vertex_count, own = options->carried > 1 ? options->carried : 1,
+             lead = n > 2 ? options->lead : 0; // at least the tip must be free
+    if (batch->held == n) return n - 1;
+    if (batch->held > own && batch->held - own > lead) lead = batch->held - own;
+    return lead;
 }
 
 static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
@@ -159,25 +207,28 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
                             const StepProgramsOptions *options, Error *error)
 {
     const StepSizes *sizes = &STEP_SIZES[options->shape][gpu->kind];
-    bool in_registers = fits_registers(hair, sizes->most_in_registers);
     *programs = (StepPrograms){
         .programs = calloc(hair->batch_count + 1, sizeof *programs->programs),
         .leads = calloc(hair->batch_count + 1, sizeof *programs->leads),
         .batch_count = hair->batch_count,
         .limits = &gpu->limits,
-        .strands_per_lane =
-            in_registers ? sizes->strands : strands_in_memory(sizes, hair, options),
-        .in_registers = in_registers,
+        .strands_per_lane = 1,
         .ordered = gpu->kind == GPU_HARDWARE,
     };
     Result result = RESULT_OK;
     if (!programs->programs || !programs->leads)
         result = error_set(error, RESULT_FAILED, "no memory for a solver");
-    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i) {
-        // at least the tip must be free
-        programs->leads[i] = hair->batches[i].vertex_count > 2 ? options->lead : 0;
-        result = build(programs, i, hair->batches[i].vertex_count, options, error);
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
+        programs->leads[i] = lead_of(&hair->batches[i], options);
+    if (result == RESULT_OK) {
+        programs->in_registers = fits_registers(hair, programs->leads, sizes->most_in_registers);
+        programs->strands_per_lane = programs->in_registers
+                                         ? sizes->strands
+                                         : strands_in_memory(sizes, hair, options);
     }
+    for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
+        if (hair->batches[i].held < hair->batches[i].vertex_count)
+            result = build(programs, i, hair->batches[i].vertex_count, options, error);
     if (result != RESULT_OK) step_programs_destroy(programs);
     return result;
 }

@@ -19,6 +19,9 @@ typedef struct SolverStep {
     bool first;
     uint32_t number;         // increases by 1 from step to step; any first value
     HeadPose head_old, head; // at the step's start and end
+    // A point near the hair, in the head's frame (m), and what rounding of the poses takes from its
+    // displacement in the step (step_set_move). 0 if unknown.
+    float pivot[3], move_lost[3];
     // The shape of the mesh that hair is bound to, at the step's start and end (bound_body_shape).
     double shape_old, shape;
     float frame_old, frame_now; // a sub-step's begin and end, as fractions of the whole step
@@ -28,6 +31,10 @@ typedef struct SolverStep {
     float shelter[4];           // xyz: middle of the head (m); w: share of the wind that it blocks
     float head_velocity[3];     // m/s, of the middle of the head
 } SolverStep;
+
+// Sets `pivot` and says by how much it moves in the step, in the world (m). Far from the origin,
+// roots that move by the difference of two rounded poses would tremble in short steps.
+void step_set_move(SolverStep *step, const float pivot[3], const double move[3]);
 
 // Fills the step's shelter and head_velocity from its head poses and dt. `middle`: the middle of
 // the head in the head's frame (m, head_middle); `share`: share of the wind that the head blocks.
@@ -81,17 +88,18 @@ void step_pass_run(StepPass *pass, const void *params, size_t size, uint32_t str
 typedef struct StepProgramsOptions {
     const char *shader; // glsl file
     StepShape shape;    // row of STEP_SIZES: which strands stay in registers, strands per lane
-    uint32_t lead;      // vertices after the root that the head carries, if a strand has enough
-    // SolverRecipe.most_vertices
-    uint32_t most_vertices;
-    bool sheltered;     // the head blocks wind (forces.glsl)
-    bool styled;        // there is a spring towards the style
-    bool varies;        // parameters differ along the strand (along.h)
-    bool bound;         // strands have frames of their own (bound.h)
+    // Vertices after the root that the head carries: of strands that keep a free tip, `lead`; where
+    // mobility holds more (HairBatch.held), those beyond the `carried` of the solver itself.
+    uint32_t lead, carried;
+    uint32_t most_vertices;      // SolverRecipe.most_vertices
+    bool sheltered;              // the head blocks wind (forces.glsl)
+    bool styled;                 // there is a spring towards the style
+    bool varies;                 // parameters differ along the strand (along.h)
+    bool bound;                  // strands have frames of their own (bound.h)
     const ShaderDefine *defines; // the variant's own, at most STEP_OWN_DEFINES
 } StepProgramsOptions;
 
-// The programs of a solver: one for each batch of the hair.
+// The programs of a solver: one for each batch of the hair, 0 where all vertices are held.
 typedef struct StepPrograms {
     GLuint *programs; // [batch_count]
     uint32_t *leads;  // [batch_count]: vertices after the root that the head carries

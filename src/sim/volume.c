@@ -86,6 +86,13 @@ static int grain_cell(const Volume *volume, const HairBatch *batch, uint32_t s, 
     return grain_cell_at(at[0], at[1], at[2], size[0], size[1], size[2]);
 }
 
+// Vertices, from the root, that the head carries.
+static uint32_t carried(const Volume *volume, const HairBatch *batch)
+{
+    uint32_t all = solver_carried(volume->solver);
+    return batch->held > all ? batch->held : all;
+}
+
 // Visits all grains. Called once with `count` to count the particles of each cell, and once with
 // `rest` to store each particle's cell value `own`.
 static Result for_grains(Volume *volume, uint32_t *count, const uint32_t *own, uint32_t *rest,
@@ -96,7 +103,7 @@ static Result for_grains(Volume *volume, uint32_t *count, const uint32_t *own, u
     if (!position) return error_set(error, RESULT_FAILED, "no memory for a section's volume");
     uint32_t n = batch->vertex_count, grain = volume->grain;
     for (uint32_t s = 0; s < batch->strand_count; ++s)
-        for (uint32_t j = volume->step.carried; j < n; j += grain) {
+        for (uint32_t j = carried(volume, batch); j < n; j += grain) {
             int cell = grain_cell(volume, batch, s, j, (const Float4 *)position);
             for (uint32_t k = j; cell >= 0 && k < j + grain && k < n; ++k) {
                 if (count) ++count[cell];
@@ -196,7 +203,6 @@ Result volume_create(Volume *volume, const Gpu *gpu, GpuTimer *timer, const Hair
                        .strength = params->volume,
                        .segments = buffers[1].kind == SOLVER_TIPS,
                        .rest = calloc(hair->batch_count + 1, sizeof *volume->rest)};
-    volume->step.carried = solver_carried(solver);
     place_grid(volume);
     Result result = RESULT_OK;
     if (!volume->rest) result = error_set(error, RESULT_FAILED, "no memory for a section's volume");
@@ -272,6 +278,7 @@ static void run_strands(Volume *volume, StepPass *pass)
             gpu_buffer_bind_storage(buffers[1].buffer, BIND_STATE_OUT);
         }
         volume->step.vertex_count = batch->vertex_count;
+        volume->step.carried = carried(volume, batch);
         volume->step.strand_count = batch->strand_count;
         step_pass_run(pass, &volume->step, sizeof volume->step, batch->strand_count);
     }

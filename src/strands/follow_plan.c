@@ -18,7 +18,8 @@ enum {
     FRAME_SEGMENTS = 16000, // cost of the rest of a 1280x720 frame, in drawn segments
     SHARE_NEIGHBOURS = 16
 };
-static const double MOST_SIDE = 6; // longest side of a triangle between guides, in follower radii
+static const double MOST_SIDE = 6;  // longest side of a triangle between guides, in follower radii
+static const double ROUNDED = 1e-3; // of the squared distances of roots
 // Two strands agree if the cosine of the angle between their chords is at least this.
 static const double LEAST_COSINE = 0.5;
 
@@ -79,23 +80,20 @@ float follow_plan_reach(const SectionParams *params, const Strands *strands)
     return options.radius * fmaxf(1, 1 + params->tip_separation);
 }
 
-static void scale(Double3 a, double by)
-{
-    for (int k = 0; k < 3; ++k) a[k] *= by;
-}
-
-// Two unit vectors perpendicular to `normal` (any length but 0) and to each other.
+// Two unit vectors perpendicular to `normal` (any length but 0) and to each other: those of a fixed
+// frame, turned by the smallest rotation from its axis c to the normal. It changes smoothly with
+// the normal except opposite to c, a direction that no hair has on purpose: were it an axis of the
+// world, rounding would decide how followers lie around straight hair.
 static void span_plane(const Double3 normal, Double3 u, Double3 v)
 {
-    int least = 0;
-    for (int k = 1; k < 3; ++k)
-        if (fabs(normal[k]) < fabs(normal[least])) least = k;
-    Double3 axis = {0};
-    axis[least] = 1;
-    double3_cross(normal, axis, u);
-    scale(u, 1 / sqrt(double3_dot(u, u)));
-    double3_cross(normal, u, v);
-    scale(v, 1 / sqrt(double3_dot(v, v)));
+    static const Double3 c = {0.36, 0.48, 0.8}, side[2] = {{0.8, -0.6, 0}, {0.48, 0.64, -0.6}};
+    double length = sqrt(double3_dot(normal, normal)), *spans[2] = {u, v};
+    double opposite = 1 + double3_dot(c, normal) / length;
+    for (int i = 0; i < 2; ++i) {
+        double share = double3_dot(side[i], normal) / length / opposite;
+        for (int k = 0; k < 3; ++k)
+            spans[i][k] = side[i][k] - (opposite > 1e-12 ? share * (c[k] + normal[k] / length) : 0);
+    }
 }
 
 static const float *vertex(const Strands *strands, uint32_t s, uint32_t j)
@@ -108,21 +106,6 @@ static void chord(const Strands *strands, uint32_t s, uint32_t j, Double3 way)
 {
     const float *root = vertex(strands, s, 0), *end = vertex(strands, s, j);
     for (int k = 0; k < 3; ++k) way[k] = (double)end[k] - (double)root[k];
-}
-
-// FNV-1a hash of the vertices. It seeds a guide's random numbers, so they depend on the guide's
-// shape and not on its position in the file.
-static uint64_t shape_hash(const Strands *strands, uint32_t s)
-{
-    uint64_t hash = 0xcbf29ce484222325;
-    const float(*at)[3] = (const float(*)[3]) & strands->position[strands->first[s]];
-    for (uint32_t j = 0; j < strands_size(strands, s); ++j)
-        for (int k = 0; k < 3; ++k) {
-            uint32_t bits;
-            memcpy(&bits, &at[j][k], sizeof bits);
-            hash = (hash ^ bits) * 0x100000001b3;
-        }
-    return hash;
 }
 
 // A triangle between a guide's root and the roots of two of its neighbours.
@@ -163,9 +146,18 @@ static void least_spread(const Neighbourhood *around, Double3 normal)
     double3_copy(fit, normal);
 }
 
+static int by_number(const void *a, const void *b)
+{
+    uint32_t x = ((const Neighbour *)a)->point, y = ((const Neighbour *)b)->point;
+    return (x > y) - (x < y);
+}
+
+// Neighbours in the order of the strands: rounding decides which of two is nearer where roots stand
+// in rows.
 static void look_around(Neighbourhood *around, const Nearest *roots, uint32_t guide)
 {
     around->count = nearest_find(roots, guide, around->neighbour, NEIGHBOURS);
+    qsort(around->neighbour, around->count, sizeof *around->neighbour, by_number);
     for (uint32_t i = 0; i < around->count; ++i)
         for (int k = 0; k < 3; ++k)
             around->at[i][k] = (double)roots->point[around->neighbour[i].point][k] -
@@ -179,8 +171,9 @@ static void look_around(Neighbourhood *around, const Nearest *roots, uint32_t gu
 }
 
 // Whether the circle through the origin, a and b contains none of the other points. Its centre m
-// solves 2 m.a = a.a and 2 m.b = b.b, and a point p is inside if p.p < 2 m.p. A point that lies on
-// the circle, to rounding, counts as outside.
+// solves 2 m.a = a.a and 2 m.b = b.b, and a point p is inside if p.p < 2 m.p. A point on the circle
+// counts as outside, and so does one that rounding of a file could have moved into it: otherwise
+// rounding would choose the diagonals where roots stand in rows.
 static bool is_delaunay(const Neighbourhood *around, uint32_t i, uint32_t j, double *area)
 {
     const double *a = around->flat[i], *b = around->flat[j];
@@ -192,7 +185,7 @@ static bool is_delaunay(const Neighbourhood *around, uint32_t i, uint32_t j, dou
     for (uint32_t k = 0; k < around->count; ++k) {
         const double *p = around->flat[k];
         double pp = p[0] * p[0] + p[1] * p[1];
-        if (k != i && k != j && pp < (1 - 1e-9) * (x * p[0] + y * p[1])) return false;
+        if (k != i && k != j && pp < (1 - ROUNDED) * (x * p[0] + y * p[1])) return false;
     }
     *area = fabs(twice) / 2;
     return true;
@@ -276,7 +269,7 @@ static void place_beside(Follower *follower, const Strands *strands, uint32_t s,
 static void plan_guide(FollowPlan *plan, const Strands *strands, uint32_t s, uint32_t guide,
                        const Fan *fan, const FollowOptions *options)
 {
-    Random random = random_create(options->seed, shape_hash(strands, s));
+    Random random = random_create(options->seed, s);
     for (uint32_t i = 0; i < options->per_guide; ++i) {
         Follower *follower = &plan->follower[(size_t)guide * options->per_guide + i];
         *follower = (Follower){.guide = {guide, guide, guide}, .weight = {1, 0, 0}};

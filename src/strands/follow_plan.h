@@ -60,8 +60,8 @@ typedef struct FollowPlan {
 } FollowPlan;
 
 // Plans the followers of the strands guides[0 .. count - 1], which must have equal vertex counts.
-// The result depends on the seed, the vertices of the guide and, with `interpolate`, on its
-// neighbours, but not on the order of the strands.
+// Random numbers depend on the seed and on the guide's number in `strands`, not on its vertices:
+// the same hair moved, scaled or rounded gets the same followers.
 //
 // Offset: roots are distributed uniformly in a disc of the given radius around the guide's root,
 // perpendicular to its first segment.

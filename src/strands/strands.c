@@ -78,6 +78,26 @@ static bool is_usual_mobility(const Strands *strands)
     return true;
 }
 
+uint32_t strands_held(const Strands *strands, uint32_t s)
+{
+    const float *mobility = strands->mobility ? &strands->mobility[strands->first[s]] : NULL;
+    uint32_t held = 1;
+    while (mobility && held < strands_size(strands, s) && !(mobility[held] > 0)) ++held;
+    return held;
+}
+
+uint32_t strands_held_elsewhere(const Strands *strands)
+{
+    uint32_t count = 0;
+    for (uint32_t s = 0; strands->mobility && s < strands->strand_count; s++) {
+        uint32_t end = strands->first[s + 1] - (strands->both_ends_fixed ? 1 : 0);
+        uint32_t v = strands->first[s] + strands_held(strands, s);
+        while (v < end && strands->mobility[v] > 0) ++v;
+        count += v < end;
+    }
+    return count;
+}
+
 bool strands_are_opaque(const Strands *strands)
 {
     for (uint32_t v = 0; strands->color && v < strands->vertex_count; v++)

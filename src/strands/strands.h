@@ -54,6 +54,14 @@ enum {
 Result strands_create(Strands *strands, uint32_t strand_count, uint32_t vertex_count, Error *error);
 void strands_destroy(Strands *strands);
 
+// The number of vertices of strand s, from its root, that move with the head: the root, and those
+// of mobility 0 before the first that may move.
+uint32_t strands_held(const Strands *strands, uint32_t s);
+
+// The number of strands with vertices of mobility 0 behind one that may move (fixed tips are not
+// counted). These vertices are simulated.
+uint32_t strands_held_elsewhere(const Strands *strands);
+
 // The number of vertices of strand s.
 static inline uint32_t strands_size(const Strands *strands, uint32_t s)
 {

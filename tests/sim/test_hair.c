@@ -184,7 +184,8 @@ static void blocks_lie_alike_in_c_and_glsl(void **state)
     SIZE(StepParams), STEP(head_rotation_old, ""), STEP(head_translation_old, "");
     STEP(head_rotation, ""), STEP(head_translation, ""), STEP(gravity, ""), STEP(held, ""),
         STEP(wind, "[0]");
-    STEP(shelter, ""), STEP(head_velocity, ""), STEP(dt, ""), STEP(decay, ""), STEP(gain, "");
+    STEP(shelter, ""), STEP(head_velocity, ""), STEP(head_pivot, ""), STEP(head_move, ""),
+        STEP(dt, ""), STEP(decay, ""), STEP(gain, "");
     STEP(drag, ""), STEP(strand_count, ""), STEP(vertex_count, ""), STEP(phase, "");
     STEP(frame_old, ""), STEP(frame_now, "");
     shader_release(program);

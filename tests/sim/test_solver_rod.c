@@ -35,10 +35,10 @@ static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
     static const TwinCase cases[] = {
-        {2, 60, 1, 0.5, 100, 3 * 4.5e-6, fibre},   {8, 60, 1, 0.5, 100, 3 * 2.2e-6, fibre},
-        {16, 60, 4, 0.5, 100, 3 * 4e-7, fibre},    {16, 240, 4, 0.5, 100, 3 * 2.2e-6, fibre},
-        {32, 60, 4, 0.5, 60, 3 * 4e-7, fibre},     {16, 60, 4, 0.5, 100, 3 * 4e-7, sprung},
-        {16, 60, 4, 0.5, 60, 3 * 7e-7, soft},
+        {2, 60, 1, 0.5, 100, 3 * 4.5e-6, fibre},   {8, 60, 1, 0.5, 100, 3 * 3.1e-6, fibre},
+        {16, 60, 4, 0.5, 100, 3 * 4.4e-7, fibre},    {16, 240, 4, 0.5, 100, 3 * 3.1e-6, fibre},
+        {32, 60, 4, 0.5, 60, 3 * 4.4e-7, fibre},     {16, 60, 4, 0.5, 100, 3 * 4.4e-7, sprung},
+        {16, 60, 4, 0.5, 60, 3 * 1.1e-6, soft},
     };
     static const TwinCase uneven[] = {{8, 60, 1, 0.5, 60, 3 * 1.9e-6, fibre},
                                       {17, 60, 1, 0.5, 60, 3 * 1.9e-6, fibre}};

@@ -137,10 +137,13 @@ static void middle(Middle *m, const TwinStrand *strand, const TwinStep *step,
 }
 
 // Energy that the step may end with beyond that of u: minus the energy gained before, plus the work
-// of forces from the aims to x.
-static double budget(const Middle *m, int n, const Vec *x)
+// of forces from the aims to x, plus what float32 could make of that work.
+static double budget(const Middle *m, const TwinStrand *strand, const Vec *x)
 {
-    double sum = -m->gained;
+    const int n = strand->n;
+    double length = 0, sum = -m->gained;
+    for (int j = 1; j < n; ++j) length += strand->length[j];
+    sum += (n - 1) * 6e-8 * length * vec_norm(m->force);
     for (int j = 1; j < n; ++j)
         for (int k = 0; k < 3; ++k) {
             double spring = m->stiffness * (m->style[j][k] - (x[j][k] + m->aim[j][k]) / 2);
@@ -162,7 +165,7 @@ static void finish(TwinStrand *strand, Middle *m, const Vec *x)
 {
     const int n = strand->n;
     Vec d[TWIN_MAX] = {{0}};
-    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], may = budget(m, n, x);
+    double right[TWIN_MAX] = {0}, lambda[TWIN_MAX], may = budget(m, strand, x);
     for (int j = 1; j < n; ++j) {
         Vec relative, absolute;
         vec_add_scaled(m->u[j], 1, m->root_velocity, absolute);

@@ -494,7 +494,7 @@ void reference_rod_step(TwinStrand *strand, const TwinStep *step, const SectionP
     double energy = reference_rod_energy(strand, &step->head, params, NULL);
     double gained = energy - strand->energy + worked;
     vec_add_scaled(step->gravity, step->drag, step->wind, push);
-    double speed = 1e-6 * (length + vec_norm(rod.root)) / step->dt;
+    double speed = 1e-6 * length / step->dt;
     double over = gained - length * (0.005 * length * vec_norm(push) / 2 + speed * speed / 2);
     if (over > 0) {
         double paid = fmin(over, kinetic), kept = sqrt(1 - paid / fmax(kinetic, 1e-30));
