@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/program.h"
+#include "base/interrupt_install.h"
+#include "base/json.h"
 #include "base/outfile.h"
 
 #include <errno.h>
@@ -14,6 +16,12 @@ static bool reader_left(void)
 {
     struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
     return poll(&output, 1, 0) > 0 && (output.revents & POLLERR);
+}
+
+void program_begin(void)
+{
+    interrupt_install();
+    json_memory_watch();
 }
 
 int program_end(const char *name, Result result, Error *error)

@@ -20,12 +20,6 @@ Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error)
     return reader;
 }
 
-void reader_end(Reader *reader)
-{
-    if (reader->locale) freelocale(reader->locale);
-    reader->locale = NULL;
-}
-
 Result reader_fail(Reader *reader, const char *format, ...)
 {
     if (!reader_ok(reader)) return reader->result;
@@ -342,16 +336,6 @@ static bool convert_special(const uint8_t *word, size_t length, float *value)
     return false;
 }
 
-static float convert_slowly(Reader *reader)
-{
-    if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!reader->locale) {
-        reader_fail_memory(reader);
-        return 0.0f;
-    }
-    return strtof_l((const char *)reader->data + reader->at, NULL, reader->locale);
-}
-
 float reader_read_number(Reader *reader, const char *what)
 {
     if (!reader_ok(reader)) return 0.0f;
@@ -361,7 +345,7 @@ float reader_read_number(Reader *reader, const char *what)
     const uint8_t *end = scan_decimal(start, &decimal);
     float value = 0.0f;
     if (end != start && (is_blank(*end) || *end == '\n' || end == reader->data + reader->size)) {
-        if (!convert_fast(&decimal, &value)) value = convert_slowly(reader);
+        if (!convert_fast(&decimal, &value)) value = strtof((const char *)start, NULL);
         reader->at = (size_t)(end - reader->data);
         return value;
     }

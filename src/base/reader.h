@@ -7,7 +7,6 @@
 #include "base/bytes.h"
 #include "base/error.h"
 
-#include <locale.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -22,13 +21,11 @@ typedef struct Reader {
     bool continuation; // text: a backslash at the end of a line joins the next line (Wavefront OBJ)
     Result result;     // RESULT_OK until the first failure
     Error *error;
-    locale_t locale; // "C" locale, created when first needed
 } Reader;
 
-// `bytes` and `path` must outlive the reader. reader_end frees what the reader owns.
+// `bytes` and `path` must outlive the reader.
 Reader reader_begin_binary(const char *path, const Bytes *bytes, Error *error);
 Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error);
-void reader_end(Reader *reader);
 
 // Fails at the current place with RESULT_BAD_INPUT and a line (printf style, without the place);
 // keeps an earlier error. Returns the reader's result.
@@ -77,7 +74,7 @@ bool reader_read_word(Reader *reader, char *word, size_t size);
 // An integer from 0 to 2^32 - 1 on this line.
 uint32_t reader_read_count(Reader *reader, const char *what);
 
-// A decimal number on this line, correctly rounded to float32 in any locale. Infinities and NaNs
+// A decimal number on this line, correctly rounded to float32. Infinities and NaNs
 // are accepted, also as printed by old Windows libraries (-1.#INF, 1.#QNAN, -1.#IND).
 float reader_read_number(Reader *reader, const char *what);
 

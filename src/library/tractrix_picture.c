@@ -147,6 +147,7 @@ static Result make_picture(TractrixPicture **picture, const Image *image, Error 
 
 void tractrix_picture_destroy(TractrixPicture *picture)
 {
+    LIBRARY_CALL;
     if (!picture) return;
     free(picture->image.pixels);
     free(picture);
@@ -155,6 +156,7 @@ void tractrix_picture_destroy(TractrixPicture *picture)
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,
                                      TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     Image image = {0};
     if (!picture) return library_refuse(error, "picture: got NULL");
@@ -172,6 +174,7 @@ TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path
 
 const TractrixImage *tractrix_picture_image(const TractrixPicture *picture)
 {
+    LIBRARY_CALL;
     return &picture->image;
 }
 
@@ -204,6 +207,7 @@ static Result encode(const char *path, const Image *image, Bytes *bytes, Error *
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     TractrixImage from;
     Image copy = {0};

@@ -105,6 +105,7 @@ static void forget_meshes(TractrixScene *scene)
 
 void tractrix_scene_destroy(TractrixScene *scene)
 {
+    LIBRARY_CALL;
     if (!scene) return;
     scene_destroy(&scene->scene);
     for (uint32_t i = 0; i < scene->array_count; ++i) {
@@ -151,6 +152,7 @@ static TractrixResult finish(TractrixScene **scene, Result result, const Error *
 
 TractrixResult tractrix_scene_create(TractrixScene **scene, const char *look, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     *scene = NULL;
@@ -205,6 +207,7 @@ static Result read_scene(TractrixScene **scene, const char *path, Error *error)
 
 TractrixResult tractrix_scene_read(TractrixScene **scene, const char *path, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     *scene = NULL;
@@ -217,6 +220,7 @@ TractrixResult tractrix_scene_read(TractrixScene **scene, const char *path, Trac
 TractrixResult tractrix_scene_parse(TractrixScene **scene, const char *json, const char *folder,
                                     TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     char *place = NULL;
     if (!scene) return library_refuse(error, "scene: got NULL");
@@ -266,6 +270,7 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
 TractrixResult tractrix_scene_set(TractrixScene *scene, int section, const char *name,
                                   const char *text, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene || !name || !text) return library_refuse(error, "scene, name or text: got NULL");
     return library_end(set(scene, section, name, text, &why), &why, error);
@@ -280,6 +285,7 @@ static size_t put(const char *from, char *text, size_t room)
 size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *name, char *text,
                           size_t room)
 {
+    LIBRARY_CALL;
     const ParamInfo *info = name ? params_find(name) : NULL;
     uint32_t i = section < 0 ? 0 : (uint32_t)section;
     if (text && room) *text = 0;
@@ -293,6 +299,7 @@ size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *n
 
 size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
 {
+    LIBRARY_CALL;
     Scene whole;
     size_t length = 0;
     if (text && room) *text = 0;
@@ -309,11 +316,13 @@ size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
 
 uint32_t tractrix_scene_section_count(const TractrixScene *scene)
 {
+    LIBRARY_CALL;
     return scene->scene.section_count;
 }
 
 uint32_t tractrix_scene_body_count(const TractrixScene *scene)
 {
+    LIBRARY_CALL;
     return scene->scene.body_count;
 }
 
@@ -404,6 +413,7 @@ static Result add_strands(TractrixScene *scene, const char *name, const Tractrix
 TractrixResult tractrix_scene_add_strands(TractrixScene *scene, const char *name,
                                           const TractrixStrands *strands, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     return library_end(add_strands(scene, name, strands, &why), &why, error);
@@ -476,6 +486,7 @@ static Result set_only_mesh(TractrixScene *scene, const TractrixMesh *mesh, Erro
 TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh *mesh,
                                        TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     return library_end(set_only_mesh(scene, mesh, &why), &why, error);
@@ -484,6 +495,7 @@ TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh 
 TractrixResult tractrix_scene_set_body_mesh(TractrixScene *scene, uint32_t body,
                                             const TractrixMesh *mesh, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     return library_end(set_mesh(scene, body, mesh, &why), &why, error);

@@ -127,7 +127,6 @@ static void read_member(MeshSamples *samples, Reader *reader, Zip *zip, const Zi
     if (npy_array_read(&array, &inner) == RESULT_OK)
         take_array(samples, &inner, &array, file->name);
     reader->result = inner.result;
-    reader_end(&inner);
     free(owned);
 }
 

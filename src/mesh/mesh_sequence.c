@@ -253,7 +253,6 @@ static Result read_file(MeshSequence *sequence, Mesh *mesh, const Mesh *rest, co
             (format->text ? reader_begin_text : reader_begin_binary)(path, &bytes, error);
         format->read(&samples, &reader);
         result = reader.result;
-        reader_end(&reader);
     } else {
         result = error_set(error, RESULT_BAD_INPUT,
                            "%s: no sequence of meshes: expected x_%%04d.obj, .npz, .npy, .pc2, "

@@ -145,7 +145,6 @@ static void read_vector(Obj *obj, ObjStatement kind)
         Reader before = *reader;
         vector[i] = reader_read_number(reader, KINDS[kind].expected);
         if (!reader_ok(reader) || fabsf(vector[i]) <= MESH_MOST_COORDINATE) continue;
-        before.locale = reader->locale;
         *reader = before;
         reader_fail_expected(reader, KINDS[kind].expected);
     }
@@ -285,7 +284,6 @@ Result obj_read_mesh_bytes(Mesh *mesh, const char *path, const Bytes *bytes, flo
         mesh_destroy(mesh);
         reader_fail_memory(&obj.reader);
     }
-    reader_end(&obj.reader);
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         free(obj.vectors[kind].data);
         free(obj.triangles[kind].data);

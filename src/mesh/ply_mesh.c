@@ -145,6 +145,5 @@ Result ply_mesh_read(Mesh *mesh, const char *path, const Bytes *bytes, float uni
     free(ply->position);
     free(ply->triangle);
     free(ply);
-    reader_end(&reader);
     return reader.result;
 }

@@ -275,7 +275,6 @@ static Result read_source(FormatSource *source, const char *name, const Bytes *b
     source->wishes.points_per_strand = options->points_per_strand;
     source->wishes.array = options->array && *options->array ? options->array : NULL;
     Result result = format ? format->read(source, &reader) : refuse_unknown(&reader, xgen);
-    reader_end(&reader);
     if (result != RESULT_OK || !format) return result;
     TRY(check_wishes(source, name, format->name, error));
     report_source(report, source, kind);

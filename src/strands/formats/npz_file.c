@@ -148,7 +148,6 @@ static Result hold(Npz *npz, uint32_t file, Held *held)
     snprintf(path, sizeof path, "%s: %s", reader->path, npz->zip.file[file].name);
     Reader inner = reader_begin_binary(path, &content, reader->error);
     reader->result = npy_array_read(&held->array, &inner);
-    reader_end(&inner);
     held->packed = held->owned;
     held->place = npz->zip.file[file].at + (held->packed ? 0 : held->array.at);
     npz->used[file] = true;

@@ -36,7 +36,6 @@ static void count_statements(Obj *obj)
             obj->corners++;
         reader_skip_line(&counter);
     }
-    obj->reader->locale = counter.locale;
 }
 
 static void read_vertex(Obj *obj)

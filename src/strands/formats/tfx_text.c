@@ -52,7 +52,6 @@ static float read_finite(Reader *reader, const char *what)
     Reader before = *reader;
     float value = reader_read_number(reader, what);
     if (!reader_ok(reader) || isfinite(value)) return value;
-    before.locale = reader->locale;
     *reader = before;
     reader_fail_expected(reader, what);
     return 0.0f;
