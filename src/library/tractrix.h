@@ -15,7 +15,8 @@
 //   Different devices, scenes and pictures may be used by different threads at the same time.
 // Side effects: the library prints nothing, installs no signal handlers and never ends the program.
 //   It opens only files that an argument or a parameter names. It does not change which OpenGL or
-//   EGL context is current.
+//   EGL context is current, and no setting of another library, such as the allocator of jansson.
+// Locale: the locale of the host has no effect. Numbers in texts have a decimal point.
 // fork(): a child process may only destroy the devices, simulations and renderers of its parent.
 //   This frees nothing. All calls that need such a device fail with TRACTRIX_NO_GL, and so does
 //   tractrix_device_open if it was called before the fork: drivers do not survive it. Fork first
