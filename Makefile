@@ -255,8 +255,8 @@ mutate: ## put small faults into the code, one at a time; check that a test fail
 
 SEED = 1
 # Tests whose long forms take too long for `make test`.
-LONG_TESTS = ^test_stress\.c
-torture: all tests ## let every system call of small runs fail in turn, kill 200 runs, run long tests: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
+LONG_TESTS = ^test_(stress\.c|pairs\.sh)
+torture: all tests ## let every system call of small runs fail in turn, kill 200 runs, start 200 pairs of runs, run long tests: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
 	@TEST_LONG=1 tests/runner $(OUT) '$(LONG_TESTS)'
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 

@@ -122,19 +122,33 @@ static int open_descriptor(OutFile *file, mode_t folders)
     return -1;
 }
 
+// Finds the place and opens the file. Another run may be removing the folder that it has made
+// (ENOENT): then makes it again. Returns -1 with errno on failure, also with a `*result`.
+static int find_and_open(OutFile *file, mode_t folders, Result *result, Error *error)
+{
+    int descriptor = -1;
+    for (int i = 0; i < OUTFILE_TRIES && descriptor < 0; ++i) {
+        if (i > 0) {
+            place_unmake(&file->place);
+            place_close(&file->place);
+        }
+        *result = find_place(&file->place, file->path, error);
+        if (*result != RESULT_OK) break;
+        descriptor = open_descriptor(file, folders);
+        if (descriptor < 0 && errno != ENOENT) break;
+    }
+    return descriptor;
+}
+
 static Result open_new(OutFile *file, const char *path, mode_t folders, Error *error)
 {
     bool to_stdout = outfile_is_stdout(path);
-    *file = (OutFile){.path = strdup(path)};
+    Result result = RESULT_OK;
+    *file = (OutFile){.path = strdup(path), .place = {.folder = -1}};
     if (!file->path) return fail_to_write(path, ENOMEM, error);
-    Result result = to_stdout ? RESULT_OK : find_place(&file->place, path, error);
-    if (result != RESULT_OK) {
-        outfile_discard(file);
-        return result;
-    }
     if (to_stdout) fflush(stdout);
-    int descriptor =
-        to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_descriptor(file, folders);
+    int descriptor = to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                               : find_and_open(file, folders, &result, error);
     int reason = errno;
     if (descriptor >= 0) {
         file->stream = fdopen(descriptor, "wb");
@@ -144,7 +158,7 @@ static Result open_new(OutFile *file, const char *path, mode_t folders, Error *e
     if (file->stream) return RESULT_OK;
     place_unmake(&file->place);
     outfile_discard(file);
-    return fail_to_write(path, reason, error);
+    return result != RESULT_OK ? result : fail_to_write(path, reason, error);
 }
 
 Result outfile_open(OutFile *file, const char *path, Error *error)

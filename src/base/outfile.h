@@ -26,6 +26,9 @@ typedef struct OutFile {
     Leftover *leftover;
 } OutFile;
 
+// How often a folder that another run removes at the same time is made again.
+enum { OUTFILE_TRIES = 20 };
+
 // Why an output that a scene file names is refused, for messages that begin with its place.
 #define OUTFILE_ALLOWS     "expected --allow-paths, or the path on the command line"
 #define OUTFILE_IS_OUTSIDE "is outside the scene file's folder: " OUTFILE_ALLOWS
