@@ -108,8 +108,8 @@ bool claims_find_other(char other[CLAIMS_PATH_SIZE], bool *written, const char *
     const Known key = {.device = file->st_dev, .inode = file->st_ino};
     pthread_mutex_lock(&lock);
     Known **found = tfind(&key, &tree, order);
-    bool another = found && !((*found)->written && strcmp((*found)->path, path) == 0) &&
-                   is_current(*found);
+    bool another =
+        found && !((*found)->written && strcmp((*found)->path, path) == 0) && is_current(*found);
     if (another) {
         snprintf(other, CLAIMS_PATH_SIZE, "%s", (*found)->path);
         *written = (*found)->written;

@@ -15,4 +15,3 @@ void json_memory_watch(void)
 {
     json_set_alloc_funcs(allocate, free);
 }
-

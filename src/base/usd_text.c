@@ -150,8 +150,8 @@ static double read_double(Reader *reader)
 static bool add_value(Reader *reader, UsdValues *values, float value)
 {
     if (values->count == values->room) {
-        size_t room = 2 * values->room + 1024;
-        float *more = realloc(values->value, room * sizeof *more);
+        size_t room = 2 * values->room + 12;
+        float *more = reader_realloc(reader, values->value, room, sizeof *more);
         if (!more) return reader_fail_memory(reader) == RESULT_OK;
         values->value = more;
         values->room = room;

@@ -31,8 +31,8 @@ bool mesh_samples_create(MeshSamples *samples, Reader *reader)
     if (count > UINT32_MAX / 2 || vertices > UINT32_MAX / 4 || vertices > MOST_VERTICES / count)
         return reader_fail(reader, "%llu samples of %llu vertices do not fit into memory",
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
-    samples->position = malloc(count * vertices * sizeof *samples->position);
-    return samples->position || reader_fail_memory(reader) == RESULT_OK;
+    samples->position = reader_malloc_frames(reader, count, vertices);
+    return samples->position;
 }
 
 static void mesh_samples_destroy(MeshSamples *samples)
