@@ -31,6 +31,9 @@ static Result fail_to_write(const char *path, int reason, Error *error)
 
 // --- The place of the file.
 
+// Permissions of new folders, before the umask.
+enum { PUBLIC = 0777, PRIVATE = 0700 };
+
 // Refuses a file that the run reads, or that it has written as another output.
 static Result check_identity(const char *path, const struct stat *file, Error *error)
 {
@@ -50,9 +53,16 @@ static bool is_resolved(const Claim *claim, const char *path)
     return claim && !(claim->whole_folder && strchr(path + strlen(claim->before), '/'));
 }
 
+// Whether the claim is on numbered files or a folder. A single file may be a pipe or a device,
+// which the user has named.
+static bool is_one_of_many(const Claim *claim)
+{
+    return claim && (claim->after || claim->whole_folder);
+}
+
 // Finds where the file of this path goes and what is already there. A claim may have resolved the
 // folder.
-static Result find_place(Place *place, const char *path, Error *error)
+static Result find_place(Place *place, const char *path, bool follow, Error *error)
 {
     const Claim *claim = claims_find(path);
     bool confined = claim && claim->confined;
@@ -60,7 +70,7 @@ static Result find_place(Place *place, const char *path, Error *error)
     int reason =
         is_resolved(claim, path) ? place_copy(place, &claim->place, name) : place_find(place, path);
     if (!reason) {
-        reason = place_look(place, !confined);
+        reason = place_look(place, follow && !confined);
         if (!reason && place->exists && S_ISDIR(place->file.st_mode)) reason = EISDIR;
         if (reason) place_close(place);
     }
@@ -72,6 +82,10 @@ static Result find_place(Place *place, const char *path, Error *error)
         result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_OUTSIDE, path);
     else if (confined && place->exists && !S_ISREG(place->file.st_mode))
         result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_NO_FILE, path);
+    else if (place->is_link)
+        result = fail_to_write(path, ELOOP, error);
+    else if (place->exists && !S_ISREG(place->file.st_mode) && (!follow || is_one_of_many(claim)))
+        result = error_set(error, RESULT_FAILED, "%.300s: " OUTFILE_IS_STREAM, path);
     else if (place->exists)
         result = check_identity(path, &place->file, error);
     if (result != RESULT_OK) place_close(place);
@@ -132,7 +146,7 @@ static int find_and_open(OutFile *file, mode_t folders, Result *result, Error *e
             place_unmake(&file->place);
             place_close(&file->place);
         }
-        *result = find_place(&file->place, file->path, error);
+        *result = find_place(&file->place, file->path, folders == PUBLIC, error);
         if (*result != RESULT_OK) break;
         descriptor = open_descriptor(file, folders);
         if (descriptor < 0 && errno != ENOENT) break;
@@ -164,7 +178,7 @@ static Result open_new(OutFile *file, const char *path, mode_t folders, Error *e
 Result outfile_open(OutFile *file, const char *path, Error *error)
 {
     Claim *claim = claims_find(path);
-    if (!claim || !claim->started) return open_new(file, path, 0777, error);
+    if (!claim || !claim->started) return open_new(file, path, PUBLIC, error);
     OutFile *started = claim->started;
     claim->started = NULL;
     *file = *started;
@@ -174,7 +188,7 @@ Result outfile_open(OutFile *file, const char *path, Error *error)
 
 Result outfile_open_private(OutFile *file, const char *path, Error *error)
 {
-    return open_new(file, path, 0700, error);
+    return open_new(file, path, PRIVATE, error);
 }
 
 Result outfile_try(const char *path, Error *error)
@@ -275,7 +289,7 @@ Result outfile_start(Claim *claim, Error *error)
 {
     OutFile *file = malloc(sizeof *file);
     if (!file) return fail_to_write(claim->before, ENOMEM, error);
-    Result result = open_new(file, claim->before, 0777, error);
+    Result result = open_new(file, claim->before, PUBLIC, error);
     if (result == RESULT_OK && !outfile_is_stdout(claim->before)) {
         // A pipe stays open, too: closing it would look like the end to its reader.
         claim->started = file;
@@ -307,8 +321,8 @@ static Result open_as_it_is(int *descriptor, const char *path, int flags, Error 
     Place place;
     struct stat file;
     *descriptor = -1;
-    TRY(find_place(&place, path, error));
-    int link = place.is_alias ? 0 : O_NOFOLLOW, reason = place_make(&place, 0777);
+    TRY(find_place(&place, path, true, error));
+    int link = place.is_alias ? 0 : O_NOFOLLOW, reason = place_make(&place, PUBLIC);
     if (!reason) {
         *descriptor = openat(place.folder, place.name, flags | O_CREAT | O_CLOEXEC | link, 0666);
         if (*descriptor < 0 || fstat(*descriptor, &file) != 0) reason = errno;

@@ -37,6 +37,9 @@ enum { OUTFILE_TRIES = 20 };
 #define OUTFILE_IS_NO_FILE                                                                         \
     "is a device or a pipe, to which a scene file may not write: " OUTFILE_ALLOWS
 
+// Why a pipe or device is refused in the place of a numbered file, a file of a folder or a cache.
+#define OUTFILE_IS_STREAM "cannot write: is a device or a pipe: expected a plain file"
+
 // Whether the path is "-", standard output.
 bool outfile_is_stdout(const char *path);
 
@@ -46,10 +49,12 @@ Result outfile_refuse_terminal(const char *path, Error *error);
 // Creates the temporary file and missing folders, with permissions by the umask, or opens standard
 // output directly. RESULT_FAILED with path and reason: a folder cannot be made, a folder has that
 // name, an existing file is read-only, ...; RESULT_USAGE for a file that the run reads or has
-// written; RESULT_BAD_INPUT for a link, device or pipe that an output of a scene file must not be.
+// written; RESULT_BAD_INPUT for a link, device or pipe that an output of a scene file must not be;
+// RESULT_FAILED for a device or pipe under the name of a numbered file or a file of a folder.
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
-// The same, with new folders accessible only to the user (mode 0700); for caches.
+// The same for caches: new folders are accessible only to the user (mode 0700), and a link is not
+// followed: RESULT_FAILED.
 Result outfile_open_private(OutFile *file, const char *path, Error *error);
 
 // Checks that the file can be opened. Leaves nothing but folders that were missing. Errors of

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/program.h"
+#include "base/bytes.h"
 #include "base/interrupt_install.h"
 #include "base/json.h"
 #include "base/outfile.h"
@@ -18,8 +19,9 @@ static bool reader_left(void)
     return poll(&output, 1, 0) > 0 && (output.revents & POLLERR);
 }
 
-void program_begin(void)
+void program_begin(int argc, char *const *argv)
 {
+    bytes_set_command_line(argc, argv);
     interrupt_install();
     json_memory_watch();
 }

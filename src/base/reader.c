@@ -19,8 +19,8 @@ Reader reader_begin_binary(const char *path, const Bytes *bytes, Error *error)
                     .error = error,
                     .memory = READER_MEMORY_TIMES * size + READER_MEMORY_BYTES,
                     .placed = READER_PLACED_TIMES * more,
-                    .work = READER_WORK_STEPS + READER_WORK_TIMES * size +
-                            READER_PLACED_STEPS * more};
+                    .work =
+                        READER_WORK_STEPS + READER_WORK_TIMES * size + READER_PLACED_STEPS * more};
 }
 
 Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error)

@@ -481,7 +481,7 @@ static Result run(int argc, char **argv, Error *error)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
-    program_begin();
+    program_begin(argc, argv);
     Result result = assumptions_take_option(&argc, argv, &error);
     THEN(result, run(argc, argv, &error));
     return program_end("tractrix-bench", result, &error);

@@ -578,7 +578,7 @@ int main(int argc, char **argv)
     Command command;
     Error error = {{0}};
     bool done = false;
-    program_begin();
+    program_begin(argc, argv);
     Result result = parse(&command, argc, argv, &done, &error);
     if (result == RESULT_OK && !done)
         result = command.shrink ? shrink(&command, &error) : run(&command, &error);

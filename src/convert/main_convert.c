@@ -500,7 +500,7 @@ int main(int argc, char **argv)
     Job job = {0};
     Error error = {{0}};
     bool done = false;
-    program_begin();
+    program_begin(argc, argv);
     Result result = parse(&job, argc, argv, &done, &error);
     if (result == RESULT_OK && !done) result = run(&job, &error);
     activity_end();

@@ -335,7 +335,7 @@ static Result run(int argc, char **argv, Error *error)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
-    program_begin();
+    program_begin(argc, argv);
     Result result = run(argc, argv, &error);
     activity_end();
     return program_end("tractrix-gen", result, &error);

@@ -14,7 +14,8 @@
 // Threads: only one thread at a time may use a device and the handles that were created from it.
 //   Different devices, scenes and pictures may be used by different threads at the same time.
 // Side effects: the library prints nothing, installs no signal handlers and never ends the program.
-//   It opens only files that an argument or a parameter names. It does not change which OpenGL or
+//   It opens only files that an argument or a parameter names, and reads only plain files, no pipes
+//   or devices. It does not change which OpenGL or
 //   EGL context is current, and no setting of another library, such as the allocator of jansson.
 // Locale: the locale of the host has no effect. Numbers in texts have a decimal point.
 // fork(): a child process may only destroy the devices, simulations and renderers of its parent.

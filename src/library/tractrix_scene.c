@@ -166,10 +166,11 @@ static Result check_file(const char *path, Error *error)
     if (strcmp(path, "-") == 0)
         return error_set(error, RESULT_USAGE, "-: expected a file: the library reads no streams");
     struct stat status;
-    if (access(path, R_OK) == 0 && stat(path, &status) == 0 && !S_ISDIR(status.st_mode))
-        return RESULT_OK;
+    int descriptor = bytes_open_plain(path, &status);
+    if (descriptor >= 0) close(descriptor);
+    if (descriptor >= 0 && !S_ISDIR(status.st_mode)) return RESULT_OK;
     Bytes bytes; // gives the same message as the programs
-    Result result = bytes_read_file(&bytes, path, error);
+    Result result = bytes_read_plain(&bytes, path, error);
     bytes_destroy(&bytes);
     return result;
 }

@@ -58,14 +58,9 @@ static const MeshSequenceFormat *find_format(const char *path, const Bytes *byte
 bool mesh_sequence_matches(const char *path)
 {
     uint8_t first[16];
-    struct stat about;
     if (is_pattern(path)) return true;
-    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode)) return false;
-    FILE *file = fopen(path, "rb");
-    if (!file) return false;
-    const Bytes bytes = {first, fread(first, 1, sizeof first, file)};
-    fclose(file);
-    return find_format(path, &bytes) != NULL;
+    const Bytes bytes = {first, bytes_peek(path, first, sizeof first)};
+    return bytes.size > 0 && find_format(path, &bytes) != NULL;
 }
 
 void mesh_sequence_destroy(MeshSequence *sequence)

@@ -44,7 +44,7 @@ static bool wants_solver_list(int argc, char **argv)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
-    program_begin();
+    program_begin(argc, argv);
     if (wants_solver_list(argc, argv)) {
         solver_print_list(stdout);
         return program_end("tractrix-render", RESULT_OK, &error);
