@@ -53,6 +53,22 @@ static bool is_resolved(const Claim *claim, const char *path)
     return claim && !(claim->whole_folder && strchr(path + strlen(claim->before), '/'));
 }
 
+// Checks that the file of a confined claim stays in its folder.
+static Result check_confined(const Place *place, const char *path, const Claim *claim, Error *error)
+{
+    const char *const reasons[][2] = {
+        {OUTFILE_IS_LINK, "is a symbolic link, which is not followed"},
+        {OUTFILE_IS_OUTSIDE, "is outside the folder"},
+        {OUTFILE_IS_NO_FILE, "is a device or a pipe"}};
+    int reason = place->is_link                                   ? 0
+                 : !place_is_within(place, &claim->home)          ? 1
+                 : place->exists && !S_ISREG(place->file.st_mode) ? 2
+                                                                  : -1;
+    if (reason < 0) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%.300s: %s%s", path, reasons[reason][claim->named],
+                     claim->named ? ": expected a plain file there" : "");
+}
+
 // Whether the claim is on numbered files or a folder. A single file may be a pipe or a device,
 // which the user has named.
 static bool is_one_of_many(const Claim *claim)
@@ -75,19 +91,12 @@ static Result find_place(Place *place, const char *path, bool follow, Error *err
         if (reason) place_close(place);
     }
     if (reason) return fail_to_write(path, reason, error);
-    Result result = RESULT_OK;
-    if (confined && place->is_link)
-        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_LINK, path);
-    else if (confined && !place_is_within(place, &claim->home))
-        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_OUTSIDE, path);
-    else if (confined && place->exists && !S_ISREG(place->file.st_mode))
-        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_NO_FILE, path);
-    else if (place->is_link)
-        result = fail_to_write(path, ELOOP, error);
-    else if (place->exists && !S_ISREG(place->file.st_mode) && (!follow || is_one_of_many(claim)))
+    Result result = confined ? check_confined(place, path, claim, error) : RESULT_OK;
+    bool stream = place->exists && !place->is_link && !S_ISREG(place->file.st_mode);
+    if (result == RESULT_OK && place->is_link) result = fail_to_write(path, ELOOP, error);
+    if (result == RESULT_OK && stream && (!follow || is_one_of_many(claim)))
         result = error_set(error, RESULT_FAILED, "%.300s: " OUTFILE_IS_STREAM, path);
-    else if (place->exists)
-        result = check_identity(path, &place->file, error);
+    if (place->exists) THEN(result, check_identity(path, &place->file, error));
     if (result != RESULT_OK) place_close(place);
     return result;
 }
@@ -371,6 +380,10 @@ Result outfile_remove(const char *path, Error *error)
     int reason = claim && !claim->whole_folder
                      ? place_copy(&place, &claim->place, claim->place.name)
                      : place_find(&place, path);
+    if (!reason && claim && claim->confined && !place_is_within(&place, &claim->home)) {
+        place_close(&place);
+        return error_set(error, RESULT_BAD_INPUT, "%.300s: is outside the folder", path);
+    }
     if (!reason) {
         bool gone = *place.missing || unlinkat(place.folder, place.name, 0) == 0;
         reason = gone || errno == ENOENT ? 0 : errno;

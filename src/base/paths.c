@@ -342,6 +342,10 @@ static Result claim_one(const Spot *spot, const PathUse *use, Error *error)
     Claim claim = {.name = use->name, .confined = use->home, .place = {.folder = -1}};
     if (use->home) TRY(check_home(spot, use, &claim.home, error));
     int reason = find_claim(&claim, spot, use);
+    if (!reason && use->role == PATH_UPDATED && (claim.whole_folder || claim.after)) {
+        claim.confined = claim.named = true;
+        if (fstat(claim.place.folder, &claim.home) != 0) reason = errno;
+    }
     Claim *kept = reason ? NULL : claims_add(&claim);
     if (!kept) {
         place_close(&claim.place);
