@@ -93,10 +93,11 @@ static long read_hex(const Parser *parser, const char *at)
 {
     long value = 0;
     for (int i = 0; i < 4; ++i) {
-        const char *digits = "0123456789abcdef";
-        const char *digit = at + i < parser->end && at[i] ? strchr(digits, at[i] | 0x20) : NULL;
-        if (!digit || (at[i] | 0x20) == 0) return -1;
-        value = value * 16 + (digit - digits);
+        static const char digits[] = "0123456789abcdefABCDEF";
+        const char *digit = at + i < parser->end && at[i] ? strchr(digits, at[i]) : NULL;
+        if (!digit) return -1;
+        long place = digit - digits;
+        value = value * 16 + (place < 16 ? place : place - 6);
     }
     return value;
 }
@@ -167,7 +168,7 @@ static char *read_string(Parser *parser, size_t *length)
         size_t size = utf8_length(parser->at, (size_t)(parser->end - parser->at));
         if ((unsigned char)*parser->at < 0x20) {
             out = NULL;
-            fail(parser, "expected no control character in a string");
+            fail(parser, "a control character in a string: expected an escape such as \\n");
         } else if (*parser->at == '\\') {
             ++parser->at;
             out = read_escape(parser, out);

@@ -7,6 +7,8 @@
 //   line end, into *error; `error` may be NULL. A function that fails changes none of its outputs,
 //   with two exceptions: it sets the handle that it should have created to NULL, and
 //   tractrix_compare may have written a part of `map`.
+//   NULL for a required argument is TRACTRIX_USAGE; functions that return no result then return 0,
+//   "" or NULL.
 // Ownership: the library copies the arrays and texts that it gets. A handle belongs to the caller,
 //   who frees it with the ..._destroy function of its type; these functions accept NULL. You may
 //   destroy handles in any order: a device or a simulation is freed after everything that was

@@ -229,6 +229,7 @@ TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *er
 const char *tractrix_device_text(const TractrixDevice *device, const char *what)
 {
     LIBRARY_CALL;
+    if (!device) return "";
     const Gpu *gpu = &device->gpu;
     const struct {
         const char *what, *text;

@@ -76,6 +76,10 @@ Result library_take_image(TractrixImage *to, const TractrixImage *image, const c
         return error_set(error, RESULT_USAGE,
                          "%s.row_bytes: got %zu, expected at least %zu, a multiple of %zu", name,
                          to->row_bytes, row, channel);
+    if (to->row_bytes > (size_t)PTRDIFF_MAX / (size_t)to->height)
+        return error_set(error, RESULT_USAGE,
+                         "%s.row_bytes: got %zu, expected an image that fits into memory", name,
+                         to->row_bytes);
     return to->pixels ? RESULT_OK : error_set(error, RESULT_USAGE, "%s.pixels: got NULL", name);
 }
 
@@ -175,7 +179,7 @@ TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path
 const TractrixImage *tractrix_picture_image(const TractrixPicture *picture)
 {
     LIBRARY_CALL;
-    return &picture->image;
+    return picture ? &picture->image : NULL;
 }
 
 static bool ends_with(const char *path, const char *suffix)

@@ -290,7 +290,8 @@ size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *n
     const ParamInfo *info = name ? params_find(name) : NULL;
     uint32_t i = section < 0 ? 0 : (uint32_t)section;
     if (text && room) *text = 0;
-    if (!info || (info->scope == SCOPE_SECTION && i >= scene->scene.section_count)) return 0;
+    if (!scene || !info || (info->scope == SCOPE_SECTION && i >= scene->scene.section_count))
+        return 0;
     if (info->scope != SCOPE_SECTION) i = 0; // the run, or the first body
     char *value = params_format(info, scene_params(&scene->scene, info->scope, i));
     size_t length = value ? put(value, text, room) : 0;
@@ -304,6 +305,7 @@ size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
     Scene whole;
     size_t length = 0;
     if (text && room) *text = 0;
+    if (!scene) return 0;
     if (library_copy_scene(&whole, scene, NULL) == RESULT_OK) {
         json_t *json = scene_to_json(&whole);
         char *dumped = json_text(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
@@ -318,13 +320,13 @@ size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
 uint32_t tractrix_scene_section_count(const TractrixScene *scene)
 {
     LIBRARY_CALL;
-    return scene->scene.section_count;
+    return scene ? scene->scene.section_count : 0;
 }
 
 uint32_t tractrix_scene_body_count(const TractrixScene *scene)
 {
     LIBRARY_CALL;
-    return scene->scene.body_count;
+    return scene ? scene->scene.body_count : 0;
 }
 
 // --- Arrays.
@@ -341,12 +343,20 @@ static Result check_strands(const TractrixStrands *strands, uint64_t *vertices, 
         (strands->vertices_each < 2 || strands->vertices_each > STRANDS_MAX_SIZE))
         return error_set(error, RESULT_USAGE, "strands.vertices_each: got %u, expected 2 to %d",
                          strands->vertices_each, STRANDS_MAX_SIZE);
-    *vertices = 0;
-    for (uint32_t s = 0; s < strands->strand_count; ++s)
-        *vertices += strands->sizes ? strands->sizes[s] : strands->vertices_each;
-    if (*vertices > UINT32_MAX)
-        return error_set(error, RESULT_USAGE, "strands: got %llu vertices, expected at most %u",
-                         (unsigned long long)*vertices, UINT32_MAX);
+    *vertices = strands->sizes ? 0 : (uint64_t)strands->strand_count * strands->vertices_each;
+    for (uint32_t s = 0; strands->sizes && s < strands->strand_count && *vertices < UINT32_MAX;
+         ++s) {
+        uint32_t size = strands->sizes[s];
+        if (size < 2 || size > STRANDS_MAX_SIZE)
+            return error_set(error, RESULT_BAD_INPUT,
+                             "strands: strand %u has %u vertices: expected 2 to %d", s, size,
+                             STRANDS_MAX_SIZE);
+        *vertices += size;
+    }
+    if (*vertices >= UINT32_MAX)
+        return error_set(error, RESULT_USAGE,
+                         "strands: got %llu vertices or more, expected fewer than 2^32 - 1",
+                         (unsigned long long)*vertices);
     return RESULT_OK;
 }
 

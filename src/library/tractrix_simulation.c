@@ -150,13 +150,13 @@ TractrixResult tractrix_simulation_create(TractrixSimulation **simulation, Tract
 const char *tractrix_simulation_messages(const TractrixSimulation *simulation)
 {
     LIBRARY_CALL;
-    return simulation->messages ? simulation->messages : "";
+    return simulation && simulation->messages ? simulation->messages : "";
 }
 
 double tractrix_simulation_time(const TractrixSimulation *simulation)
 {
     LIBRARY_CALL;
-    return simulation->simulation.time;
+    return simulation ? simulation->simulation.time : 0;
 }
 
 // --- Stepping.
