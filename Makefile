@@ -224,9 +224,15 @@ demo: ## install missing packages, build, and render the bundled scene to out/de
 	$(AGAIN) $(JOBS) all
 	@scripts/demo $(OUT) out/demo
 
-test: ## install missing packages, build, and run all tests (ONLY=NAME: tests with NAME in their name)
+# What the tests with ONLY in their name need: programs of tests by their name, and for scripts the programs of the project.
+# Scripts that need more: test_NAME.sh, then what it needs.
+ONLY_TESTS = $(filter $(shell basename -a tests/*/test_* tests/*/check_* | grep -E $(call quote,$(ONLY))),$(notdir $(wildcard tests/*/test_* tests/*/check_*)))
+ONLY_NEEDS = $(foreach test,$(filter $(addprefix %/,$(filter %.c,$(ONLY_TESTS))),$(TESTS)),$(OUT)/$(test:%.c=%)) $(if $(filter-out %.c,$(ONLY_TESTS)),all) \
+             $(if $(filter test_library_host.c,$(ONLY_TESTS)),library) $(if $(filter test_faults.sh,$(ONLY_TESTS)),faults) \
+             $(if $(filter test_library_locale.sh,$(ONLY_TESTS)),$(addprefix $(OUT)/tests/library/test_library_,scene device))
+test: ## install missing packages, build, and run all tests (ONLY=NAME: tests with NAME in their name, after building what they need)
 	@scripts/setup build run test python
-	$(AGAIN) $(JOBS) all tests
+	$(AGAIN) $(JOBS) $(if $(ONLY),$(ONLY_NEEDS),all tests)
 	@tests/runner $(OUT) $(ONLY)
 
 # The thesis's sets: four that the program makes, Mohawk if its file lies beside the project, and hair of the same size
