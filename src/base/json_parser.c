@@ -327,7 +327,7 @@ static json_t *read_value(Parser *parser)
 
 json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *why)
 {
-    json_error_t unused;
+    json_error_t unused = {0};
     Parser parser = {.at = text,
                      .end = text + size,
                      .line_start = text,

@@ -15,8 +15,8 @@ enum { MOST_ERRORS = 10, MOST_ROWS = 1000 };
 
 // --- Annotations.
 
-// Writes the next character of a text, or an escape such as \x1b if it is not visible, and steps over
-// it: logs are read in terminals, too.
+// Writes the next character of a text, or an escape such as \x1b if it is not visible, and steps
+// over it: logs are read in terminals, too.
 static void put_character(FILE *stream, const char **text)
 {
     size_t length = utf8_visible(*text, strnlen(*text, 4));

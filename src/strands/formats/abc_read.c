@@ -262,10 +262,11 @@ static void place_all(const Abc *abc, const Strands *sets, const Strands *kept,
                       const uint32_t *which, const uint32_t *first, double time, float (*room)[3],
                       float (*to)[3])
 {
+    Reader *reader = abc->alembic.file.reader;
     float(*at)[3] = room;
     for (uint32_t i = 0; i < abc->count; ++i) {
         double matrix[4][4];
-        if (!reader_work(abc->alembic.file.reader, sets[i].vertex_count + sets[i].strand_count, 200))
+        if (!reader_work(reader, (uint64_t)sets[i].vertex_count + sets[i].strand_count, 200))
             return;
         alembic_matrix(&abc->alembic, abc->set[i].object, time, matrix);
         basis_curves_place(&abc->set[i].curves, &sets[i], time, matrix, at);

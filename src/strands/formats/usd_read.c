@@ -157,7 +157,8 @@ static void place_all(const Usd *usd, const Strands *sets, double time, float (*
     for (uint32_t i = 0; i < usd->curves_count && reader_ok(usd->reader); ++i) {
         double matrix[4][4];
         usd_stage_find_matrix(&usd->stage, usd->curves[i].prim, time, matrix);
-        if (!reader_work(usd->reader, sets[i].vertex_count + sets[i].strand_count, 200)) return;
+        if (!reader_work(usd->reader, (uint64_t)sets[i].vertex_count + sets[i].strand_count, 200))
+            return;
         basis_curves_place(&usd->curves[i], &sets[i], time, matrix, to);
         to += sets[i].vertex_count;
     }
