@@ -254,11 +254,6 @@ STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## run random scenes with every solver until a rule breaks: an hour or so (STRESS="--algo chain --seed 2")
 	scripts/stress $(OUT)/tractrix-bench $(STRESS)
 
-# Works on a copy of the tree. An interrupted run continues.
-mutate: ## put small faults into the code, one at a time; check that a test fails: hours (MUTATE="--only split")
-	@scripts/setup build run test python
-	@scripts/mutate $(MUTATE)
-
 SEED = 1
 # Tests whose long forms take too long for `make test`.
 LONG_TESTS = ^test_(stress\.c|pairs\.sh)
@@ -461,7 +456,7 @@ help: ## print this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress mutate torture delays growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress torture delays growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(wildcard $(OUT)/*.d $(OUT)/*/*.d $(OUT)/*/*/*.d)
