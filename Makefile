@@ -224,9 +224,15 @@ demo: ## install missing packages, build, and render the bundled scene to out/de
 	$(AGAIN) $(JOBS) all
 	@scripts/demo $(OUT) out/demo
 
-test: ## install missing packages, build, and run all tests (ONLY=NAME: tests with NAME in their name)
+# What the tests with ONLY in their name need: programs of tests by their name, and for scripts the programs of the project.
+# Scripts that need more: test_NAME.sh, then what it needs.
+ONLY_TESTS = $(filter $(shell basename -a tests/*/test_* tests/*/check_* | grep -E $(call quote,$(ONLY))),$(notdir $(wildcard tests/*/test_* tests/*/check_*)))
+ONLY_NEEDS = $(foreach test,$(filter $(addprefix %/,$(filter %.c,$(ONLY_TESTS))),$(TESTS)),$(OUT)/$(test:%.c=%)) $(if $(filter-out %.c,$(ONLY_TESTS)),all) \
+             $(if $(filter test_library_host.c,$(ONLY_TESTS)),library) $(if $(filter test_faults.sh,$(ONLY_TESTS)),faults) \
+             $(if $(filter test_library_locale.sh,$(ONLY_TESTS)),$(addprefix $(OUT)/tests/library/test_library_,scene device))
+test: ## install missing packages, build, and run all tests (ONLY=NAME: tests with NAME in their name, after building what they need)
 	@scripts/setup build run test python
-	$(AGAIN) $(JOBS) all tests
+	$(AGAIN) $(JOBS) $(if $(ONLY),$(ONLY_NEEDS),all tests)
 	@tests/runner $(OUT) $(ONLY)
 
 # The thesis's sets: four that the program makes, Mohawk if its file lies beside the project, and hair of the same size
@@ -248,15 +254,10 @@ STRESS = --cases 5000 --steps 10000 --seed 1
 stress: all ## run random scenes with every solver until a rule breaks: an hour or so (STRESS="--algo chain --seed 2")
 	scripts/stress $(OUT)/tractrix-bench $(STRESS)
 
-# Works on a copy of the tree. An interrupted run continues.
-mutate: ## put small faults into the code, one at a time; check that a test fails: hours (MUTATE="--only split")
-	@scripts/setup build run test python
-	@scripts/mutate $(MUTATE)
-
 SEED = 1
 # Tests whose long forms take too long for `make test`.
-LONG_TESTS = ^test_stress\.c
-torture: all tests ## let every system call of small runs fail in turn, kill 200 runs, run long tests: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
+LONG_TESTS = ^test_(stress\.c|pairs\.sh)
+torture: all tests ## let every system call of small runs fail in turn, kill 200 runs, start 200 pairs of runs, run long tests: an hour (SEED=N, TORTURE_OPTIONS="--only convert")
 	@TEST_LONG=1 tests/runner $(OUT) '$(LONG_TESTS)'
 	@$(TORTURE) $(OUT) --long --seed $(SEED) --jobs $$(nproc) $(TORTURE_OPTIONS)
 
@@ -455,7 +456,7 @@ help: ## print this list
 	@echo; sed -n '4,8s/^#//p' $(firstword $(MAKEFILE_LIST))
 
 FORCE:
-.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress mutate torture delays growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
+.PHONY: library deb check-deb tarball wheel update-abi check-container drivers all tests faults demo test bench bench-image stress torture delays growth check $(CHECKS:%=check-%) check-threads check-analyzer check-tidy format install uninstall clean help FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(wildcard $(OUT)/*.d $(OUT)/*/*.d $(OUT)/*/*/*.d)

@@ -8,6 +8,7 @@ import ctypes
 from ._declarations import DeviceOptions
 from ._error import usage
 from ._library import Handle, library, lock
+from ._values import bytes_of
 
 _options: tuple[str | None, bool, bool] = (None, False, False)
 _device: Handle | None = None
@@ -20,7 +21,7 @@ def device() -> Handle:
     with lock:
         if _device is None:
             name, software, require_hardware = _options
-            options = DeviceOptions(name=name.encode() if name is not None else None, software=software,
+            options = DeviceOptions(name=bytes_of("name", name) if name is not None else None, software=software,
                                     require_hardware=require_hardware)
             _device = Handle("tractrix_device_open", "tractrix_device_destroy", ctypes.byref(options))
         return _device

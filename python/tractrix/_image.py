@@ -12,6 +12,7 @@ import numpy as np
 from ._declarations import RGBA8, RGBA16, RGBA32F, Image
 from ._error import usage
 from ._library import Handle, call, library
+from ._values import bytes_of
 
 FORMATS = {np.dtype(np.uint8): RGBA8, np.dtype(np.uint16): RGBA16, np.dtype(np.float32): RGBA32F}
 DTYPES = {number: dtype for dtype, number in FORMATS.items()}
@@ -48,7 +49,7 @@ def image_of(array: np.ndarray) -> Image:
 
 def read_image(path: str | os.PathLike[str]) -> np.ndarray:
     """Reads a PNG, EXR or PFM file: (H, W, 4), uint8 or uint16 as in the file, or linear light as float32."""
-    picture = Handle("tractrix_picture_read", "tractrix_picture_destroy", os.fsencode(path))
+    picture = Handle("tractrix_picture_read", "tractrix_picture_destroy", bytes_of("path", path))
     image = library().tractrix_picture_image(picture.value).contents
     dtype = DTYPES[image.format]
     row = image.width * 4 * dtype.itemsize
@@ -64,4 +65,4 @@ def write_image(path: str | os.PathLike[str], image: ImageLike) -> None:
     uint8, .exr or .pfm for floats. If all pixels are opaque, the file has no alpha channel; a .pfm file never has
     one."""
     array = rgba("image", image)
-    call("tractrix_image_write", ctypes.byref(image_of(array)), os.fsencode(path))
+    call("tractrix_image_write", ctypes.byref(image_of(array)), bytes_of("path", path))

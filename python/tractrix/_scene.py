@@ -14,7 +14,7 @@ from . import _arrays
 from ._declarations import Mesh, Strands
 from ._error import usage
 from ._library import Handle, call
-from ._values import text_of
+from ._values import bytes_of, text_of
 
 # (S, V, 3), a list of (V, 3), (points, sizes), or the path of a hair or scene file.
 StrandsLike = Union[np.ndarray, Sequence[np.ndarray], "tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
@@ -34,10 +34,10 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
     `thickness`, `color` and `uv`."""
     given = {name: value for name, value in parameters.items() if value is not None}
     if is_path(strands):
-        scene = Handle("tractrix_scene_read", "tractrix_scene_destroy", os.fsencode(strands))
+        scene = Handle("tractrix_scene_read", "tractrix_scene_destroy", bytes_of("strands", strands))
     else:
         look = given.pop("look", None)
-        scene = Handle("tractrix_scene_create", "tractrix_scene_destroy", None if look is None else text_of("look", look).encode())
+        scene = Handle("tractrix_scene_create", "tractrix_scene_destroy", None if look is None else bytes_of("look", text_of("look", look)))
         _add_strands(scene, strands, given)
     if mesh is not None and not is_path(mesh):
         _set_meshes(scene, mesh, deforms, given, parameters)
@@ -46,7 +46,7 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
     elif mesh is not None:
         given["mesh"] = mesh
     for name, value in given.items():
-        call("tractrix_scene_set", scene.value, -1, name.encode(), text_of(name, value).encode())
+        call("tractrix_scene_set", scene.value, -1, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
     return scene
 
 

@@ -17,7 +17,7 @@ from ._image import FORMATS, image_of
 from ._library import Handle, call, library, lock
 from ._pose import PoseLike, pose_of
 from ._scene import MeshLike, StrandsLike, scene_of
-from ._values import text_of
+from ._values import bytes_of, text_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -95,7 +95,7 @@ class Simulation:
         """Changes live parameters (`tractrix.parameters()[name].live`). They take effect at the next step or image."""
         with lock:
             for name, value in parameters.items():
-                call("tractrix_simulation_set", self._pointer, name.encode(), text_of(name, value).encode())
+                call("tractrix_simulation_set", self._pointer, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
 
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
         """Simulates one frame, which is speed / fps seconds of the scene (parameters `fps` and `speed`; `speed` is 1 by

@@ -55,6 +55,14 @@ def plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
+def bytes_of(what: str, value: str | os.PathLike[str]) -> bytes:
+    """A text or path for the library, which takes a zero for the end: one in it would name another file."""
+    encoded = os.fsencode(value)
+    if b"\0" in encoded:
+        raise usage(f"{what}: got {value!r}: expected no zero character")
+    return encoded
+
+
 def text_of(name: str, value: Any) -> str:
     """Converts `value` to the text that tractrix-render's option takes: text and paths stay unchanged, True becomes
     "true", numbers keep all digits, and sequences are joined with the separator of the parameter's kind."""

@@ -104,6 +104,8 @@ class ImageCheck:
         shown = os.path.relpath(golden, self._config.rootpath)
         if self._config.getoption("--tractrix-update"):
             golden.parent.mkdir(parents=True, exist_ok=True)
+            if golden.is_symlink() or golden.parent.is_symlink():
+                pytest.fail(f"{shown}: {what}: not written: a symbolic link, which is not followed: expected a plain file", pytrace=False)
             write_image(golden, new)
             pytest.fail(f"{shown}: {what}: golden written: look at it, commit it, and run again", pytrace=False)
         results = results_of(self._config)

@@ -40,14 +40,9 @@ static void read_transform(Ogawa *file, const OgawaObject *object, AlembicTransf
     bool moves = number && transform->width > 0;
     free(number);
     uint32_t samples = moves ? values->last ? values->samples : 1 : 0;
-    size_t bytes = (size_t)samples * transform->width * sizeof *transform->value;
-    file->budget -= (double)bytes;
-    if (moves && reader_ok(reader) && file->budget >= 0) transform->value = malloc(bytes + 1);
-    if (moves && !transform->value)
-        reader_fail(
-            reader,
-            "%s: the %u samples of a transform take more memory than a file of this size may use",
-            object->path, samples);
+    if (moves)
+        transform->value =
+            reader_malloc(reader, (uint64_t)samples * transform->width, sizeof *transform->value);
     for (uint32_t i = 0; i < samples && reader_ok(reader); ++i) {
         number = ogawa_numbers(file, values, i, &count);
         if (number && count < transform->width)
@@ -125,16 +120,41 @@ static void transform_matrix(const Ogawa *file, const AlembicTransform *transfor
     }
 }
 
+// The object's place in the world at a time; NULL after an error. Remembers it, since many objects
+// lie below one transform, and most transforms do not change.
+static AlembicWorld *find_world(const Alembic *alembic, int object, double time)
+{
+    Reader *reader = alembic->file.reader;
+    AlembicTransform *transform = &alembic->transform[object];
+    AlembicWorld *world = transform->world;
+    if (world && (world->still || world->time == time)) return world;
+    if (!world) world = transform->world = reader_calloc(reader, 1, sizeof *world);
+    if (!world) return NULL;
+    if (!world->own_known) {
+        if (!reader_work(reader, transform->step_count + 1u, 200)) return NULL;
+        transform_matrix(&alembic->file, transform, time, world->own);
+        world->own_known = transform->samples < 2;
+    }
+    world->time = time;
+    world->still = world->own_known;
+    memcpy(world->matrix, world->own, sizeof world->own);
+    int parent = alembic->file.object[object].parent;
+    if (transform->resets || parent < 0) return world;
+    AlembicWorld *above = find_world(alembic, parent, time);
+    if (!above) return NULL;
+    multiply(world->matrix, world->own, above->matrix);
+    world->still = world->still && above->still;
+    return world;
+}
+
 void alembic_matrix(const Alembic *alembic, int object, double time, double matrix[4][4])
 {
-    set_identity(matrix);
-    for (; object >= 0; object = alembic->file.object[object].parent) {
-        const AlembicTransform *transform = &alembic->transform[object];
-        double own[4][4];
-        transform_matrix(&alembic->file, transform, time, own);
-        multiply(matrix, matrix, own);
-        if (transform->resets) break;
-    }
+    bool good = reader_work(alembic->file.reader, 64, 50); // its parents
+    const AlembicWorld *world = good ? find_world(alembic, object, time) : NULL;
+    if (world)
+        memcpy(matrix, world->matrix, sizeof world->matrix);
+    else
+        memset(matrix, 0, 16 * sizeof(double));
 }
 
 void alembic_longest(const Alembic *alembic, int object, uint32_t *sampling, uint32_t *count)
@@ -166,8 +186,8 @@ Result alembic_open(Alembic *alembic, Reader *reader)
     Ogawa *file = &alembic->file;
     *alembic = (Alembic){0};
     TRY(ogawa_open(file, reader));
-    alembic->transform = calloc((size_t)file->count + 1, sizeof *alembic->transform);
-    alembic->hidden = calloc((size_t)file->count + 1, sizeof *alembic->hidden);
+    alembic->transform = reader_calloc(reader, (size_t)file->count + 1, sizeof *alembic->transform);
+    alembic->hidden = reader_calloc(reader, (size_t)file->count + 1, sizeof *alembic->hidden);
     if (!alembic->transform || !alembic->hidden) return reader_fail_memory(reader);
     for (int i = 0; i < file->count && reader_ok(reader); ++i) {
         const OgawaObject *object = &file->object[i];
@@ -181,8 +201,10 @@ Result alembic_open(Alembic *alembic, Reader *reader)
 
 void alembic_close(Alembic *alembic)
 {
-    for (int i = 0; alembic->transform && i < alembic->file.count; ++i)
+    for (int i = 0; alembic->transform && i < alembic->file.count; ++i) {
         free(alembic->transform[i].value);
+        free(alembic->transform[i].world);
+    }
     free(alembic->transform);
     free(alembic->hidden);
     ogawa_close(&alembic->file);

@@ -5,12 +5,20 @@
 
 #include "base/ogawa.h"
 
+// The matrix of an object in the world, at the time for which it was last asked.
+typedef struct AlembicWorld {
+    double own[4][4], matrix[4][4], time;
+    bool own_known; // `own` is that of the transform, which does not change
+    bool still;     // `matrix` is the same at all times
+} AlembicWorld;
+
 // The steps of a transform, and their values at each sample.
 typedef struct AlembicTransform {
     uint8_t step[64];
     uint32_t step_count, width, samples, sampling;
-    double *value; // [samples * width]; NULL for the identity
-    bool resets;   // parent transforms do not apply
+    double *value;       // [samples * width]; NULL for the identity
+    bool resets;         // parent transforms do not apply
+    AlembicWorld *world; // NULL: not yet asked for
 } AlembicTransform;
 
 typedef struct Alembic {
@@ -27,5 +35,6 @@ void alembic_close(Alembic *alembic);
 // parents. `sampling` and `count` hold the property's on input, the longest on output.
 void alembic_longest(const Alembic *alembic, int object, uint32_t *sampling, uint32_t *count);
 
-// The matrix from an object to the world at a time: p' = p M, for row vectors.
+// The matrix from an object to the world at a time: p' = p M, for row vectors. Fails the reader if
+// it takes too much work.
 void alembic_matrix(const Alembic *alembic, int object, double time, double matrix[4][4]);

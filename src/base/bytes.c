@@ -13,13 +13,14 @@
 #include <unistd.h>
 
 // Reads from `descriptor` until the end of the file, into a buffer that first has room for
-// `capacity` bytes and a zero. The buffer grows, because the size of pipes and /proc files is not
-// known in advance. Returns 0 or an errno.
-static int read_all(Bytes *bytes, int descriptor, size_t capacity)
+// `capacity` bytes and a zero. Unless `capacity` is the most that is read, the buffer grows,
+// because the size of pipes and /proc files is not known in advance. Returns 0 or an errno.
+static int read_all(Bytes *bytes, int descriptor, size_t capacity, bool most)
 {
     bytes->data = malloc(capacity + 1);
     if (!bytes->data) return ENOMEM;
     for (;;) {
+        if (bytes->size == capacity && most) break;
         if (bytes->size == capacity) {
             if (capacity > SIZE_MAX / 2 - 4096) return ENOMEM;
             size_t larger = capacity + capacity / 2 + 4096;
@@ -38,15 +39,91 @@ static int read_all(Bytes *bytes, int descriptor, size_t capacity)
     return 0;
 }
 
-Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
+// --- Plain files.
+
+const char BYTES_IS_NOT_PLAIN[] = "is a device or pipe: expected a plain file";
+
+static bool is_stream(const struct stat *status)
 {
+    return !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
+}
+
+int bytes_open_plain(const char *path, struct stat *status)
+{
+    // Looking first, because opening some devices starts something.
+    if (stat(path, status) != 0) return -1;
+    bool stream = is_stream(status);
+    int descriptor = stream ? -1 : open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor >= 0) stream = fstat(descriptor, status) != 0 || is_stream(status);
+    if (descriptor >= 0 && stream) close(descriptor);
+    if (stream) errno = EINVAL;
+    return stream ? -1 : descriptor;
+}
+
+size_t bytes_peek(const char *path, void *first, size_t size)
+{
+    struct stat status;
+    int descriptor = bytes_open_plain(path, &status);
+    if (descriptor < 0) return 0;
+    if ((uint64_t)status.st_size < size) size = (size_t)status.st_size;
+    ssize_t got = size ? pread(descriptor, first, size, 0) : 0;
+    int reason = errno;
+    close(descriptor);
+    errno = reason;
+    return got > 0 ? (size_t)got : 0;
+}
+
+static Result fail(const char *path, int reason, Error *error)
+{
+    return error_set(error, reason == ENOMEM ? RESULT_FAILED : RESULT_BAD_INPUT, "%s: %s", path,
+                     strerror(reason));
+}
+
+Result bytes_read_plain(Bytes *bytes, const char *path, Error *error)
+{
+    struct stat status;
     *bytes = (Bytes){0};
+    int descriptor = bytes_open_plain(path, &status);
+    if (descriptor < 0 && errno == EINVAL)
+        return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, BYTES_IS_NOT_PLAIN);
+    if (descriptor < 0) return fail(path, errno, error);
+    claims_note_input(path, &status);
+    int reason = read_all(bytes, descriptor, (size_t)status.st_size, true);
+    close(descriptor);
+    if (reason == 0) return RESULT_OK;
+    bytes_destroy(bytes);
+    return fail(path, reason, error);
+}
+
+// --- Paths of the command line.
+
+static int argument_count;
+static char *const *arguments;
+
+void bytes_set_command_line(int argc, char *const *argv)
+{
+    argument_count = argc;
+    arguments = argv;
+}
+
+// Whether the path is an argument, or the value of one ("--mesh=PATH").
+static bool is_argument(const char *path)
+{
+    for (int i = 1; i < argument_count; ++i) {
+        const char *text = arguments[i], *equals = *text == '-' ? strchr(text, '=') : NULL;
+        if (strcmp(text, path) == 0 || (equals && strcmp(equals + 1, path) == 0)) return true;
+    }
+    return false;
+}
+
+static Result read_stream(Bytes *bytes, const char *path, Error *error)
+{
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     struct stat status;
     if (descriptor < 0 || fstat(descriptor, &status) != 0) {
         int reason = errno;
         if (descriptor >= 0) close(descriptor);
-        return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
+        return fail(path, reason, error);
     }
     if ((S_ISCHR(status.st_mode) && !isatty(descriptor)) || S_ISBLK(status.st_mode)) {
         close(descriptor);
@@ -57,13 +134,21 @@ Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
     // One byte more than the size, so that read() reports the end of the file before the buffer
     // must grow.
     size_t capacity = S_ISREG(status.st_mode) ? (size_t)status.st_size + 1 : 4096;
-    int reason = read_all(bytes, descriptor, capacity);
+    int reason = read_all(bytes, descriptor, capacity, false);
     close(descriptor);
     if (reason == 0) return RESULT_OK;
     bytes_destroy(bytes);
-    return error_set(error, reason == ENOMEM ? RESULT_FAILED : RESULT_BAD_INPUT, "%s: %s", path,
-                     strerror(reason));
+    return fail(path, reason, error);
 }
+
+Result bytes_read_file(Bytes *bytes, const char *path, Error *error)
+{
+    *bytes = (Bytes){0};
+    return is_argument(path) ? read_stream(bytes, path, error)
+                             : bytes_read_plain(bytes, path, error);
+}
+
+// --- Standard input.
 
 Result bytes_read_input(Bytes *bytes, const char *path, Error *error)
 {
@@ -76,7 +161,7 @@ Result bytes_read_input(Bytes *bytes, const char *path, Error *error)
         return error_set(error, RESULT_USAGE,
                          "-: standard input is a terminal: expected a pipe or a file");
     read_before = true;
-    int reason = read_all(bytes, STDIN_FILENO, 65536);
+    int reason = read_all(bytes, STDIN_FILENO, 65536, false);
     if (reason == 0) return RESULT_OK;
     bytes_destroy(bytes);
     return error_set(error, reason == ENOMEM ? RESULT_FAILED : RESULT_BAD_INPUT,

@@ -88,10 +88,11 @@ Result chunk_file_open(ChunkFile *file, const char *path, const char *magic, Err
     *file = (ChunkFile){.path = strdup(path), .descriptor = -1};
     if (!file->path) return error_set(error, RESULT_FAILED, "no memory for a file's name");
     struct stat status;
-    file->descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    file->descriptor = bytes_open_plain(path, &status);
     Result result = RESULT_OK;
-    if (file->descriptor < 0 || fstat(file->descriptor, &status) != 0)
-        result = error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(errno));
+    if (file->descriptor < 0)
+        result = error_set(error, RESULT_BAD_INPUT, "%s: %s", path,
+                           errno == EINVAL ? BYTES_IS_NOT_PLAIN : strerror(errno));
     else if (!S_ISREG(status.st_mode))
         result = error_set(error, RESULT_BAD_INPUT, "%s: not a plain file", path);
     else

@@ -93,13 +93,23 @@ void claims_note_output(const char *path, const struct stat *file)
     if (first && S_ISREG(file->st_mode)) note(path, file, true);
 }
 
+// Whether the path still leads to the file. If not, the file is gone and another one has its
+// inode; other runs may replace what this one has written.
+static bool is_current(const Known *known)
+{
+    struct stat now;
+    return stat(known->path, &now) == 0 && now.st_dev == known->device &&
+           now.st_ino == known->inode;
+}
+
 bool claims_find_other(char other[CLAIMS_PATH_SIZE], bool *written, const char *path,
                        const struct stat *file)
 {
     const Known key = {.device = file->st_dev, .inode = file->st_ino};
     pthread_mutex_lock(&lock);
     Known **found = tfind(&key, &tree, order);
-    bool another = found && !((*found)->written && strcmp((*found)->path, path) == 0);
+    bool another =
+        found && !((*found)->written && strcmp((*found)->path, path) == 0) && is_current(*found);
     if (another) {
         snprintf(other, CLAIMS_PATH_SIZE, "%s", (*found)->path);
         *written = (*found)->written;
@@ -110,15 +120,17 @@ bool claims_find_other(char other[CLAIMS_PATH_SIZE], bool *written, const char *
 
 void claims_end(void)
 {
-    for (Claim *claim = claims_next(NULL); claim; claim = claims_next(claim))
-        place_unmake(&claim->place);
+    // From the last one to the first: a later claim may hold a folder that an earlier one has made.
     while (first) {
-        Link *next = first->next;
-        place_close(&first->claim.place);
-        free(first->claim.before);
-        free(first->claim.after);
-        free(first);
-        first = next;
+        Link **last = &first;
+        while ((*last)->next) last = &(*last)->next;
+        Claim *claim = &(*last)->claim;
+        place_unmake(&claim->place);
+        place_close(&claim->place);
+        free(claim->before);
+        free(claim->after);
+        free(*last);
+        *last = NULL;
     }
     tdestroy(tree, free);
     tree = NULL;

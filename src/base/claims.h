@@ -14,6 +14,7 @@ typedef struct Claim {
     char *after;       // of numbered files: the part after the number; NULL for one file; owned
     bool whole_folder; // all files whose path begins with `before`, which ends with a slash
     bool confined;     // links are not followed, and everything is within the folder `home`
+    bool named;        // of a confined claim: the user, not a scene file, has named the folder
     struct stat home;
     Place place;   // of the file; of numbered files with any name; owned
     void *started; // used by outfile.h: the file that was opened in advance; NULL if none

@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-// Writes `before` and the shortest of %.6g .. %.9g that reads back as `value`, with a decimal point
-// in any locale.
+// Writes `before` and the shortest of %.6g .. %.9g that reads back as `value`, with a decimal
+// point.
 void decimal_put(FILE *stream, const char *before, float value);
 
 // Writes the shortest decimal number that reads back as `value` (finite), cut at `size`; 16

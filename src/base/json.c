@@ -5,7 +5,6 @@
 #include "base/suggest.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,43 +15,9 @@ enum { EXCERPT_SIZE = 64 };
 
 static _Thread_local bool memory_short;
 
-// If memory runs out, jansson 2.14 drops characters and then fails an assertion of its own
-// (lex_scan_string). Instead it gets memory from this reserve, which is never freed, and json_read
-// discards the result. So the program ends with an error message instead of an abort.
-enum { RESERVE_BYTES = 1 << 18, ALIGNMENT = 16 };
-static _Alignas(ALIGNMENT) char reserve[RESERVE_BYTES];
-static atomic_size_t reserve_used;
-
-static void *take_reserve(size_t size)
+void json_memory_note(void)
 {
-    size = (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    if (size > RESERVE_BYTES) return NULL;
-    size_t at = atomic_fetch_add(&reserve_used, size);
-    return at <= RESERVE_BYTES - size ? reserve + at : NULL;
-}
-
-static void *allocate(size_t size)
-{
-    void *block = malloc(size);
-    if (block) return block;
     memory_short = true;
-    return take_reserve(size);
-}
-
-static void release(void *block)
-{
-    uintptr_t at = (uintptr_t)block, first = (uintptr_t)reserve;
-    if (at < first || at >= first + RESERVE_BYTES) free(block);
-}
-
-// Runs before main, so that no value comes from another allocator. A host program that loads the
-// library may have set an allocator of its own, which is kept.
-static __attribute__((constructor)) void watch_memory(void)
-{
-    json_malloc_t allocates;
-    json_free_t releases;
-    json_get_alloc_funcs(&allocates, &releases);
-    if (allocates == malloc && releases == free) json_set_alloc_funcs(allocate, release);
 }
 
 bool json_memory_short(void)
@@ -207,14 +172,6 @@ Result json_check_object(const JsonPlace *place, const json_t *value, const char
     return RESULT_OK;
 }
 
-json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why)
-{
-    json_t *value = json_loadb(text, size, flags, why);
-    if (!value || !json_memory_short()) return value;
-    json_decref(value);
-    return NULL;
-}
-
 char *json_text(const json_t *value, size_t flags)
 {
     char *dump = value ? json_dumps(value, flags) : NULL;
@@ -229,9 +186,8 @@ char *json_text(const json_t *value, size_t flags)
 Result json_parse(json_t **value, const char *path, const Bytes *bytes, size_t flags, Error *error)
 {
     json_error_t why;
-    *value = json_read(bytes->data, bytes->size, flags, &why);
+    *value = json_read((const char *)bytes->data, bytes->size, flags, &why);
     if (*value) return RESULT_OK;
-    // jansson cannot report errors that are not in the text.
     if (json_memory_short()) return error_set(error, RESULT_FAILED, "%s: out of memory", path);
     return error_set(error, RESULT_BAD_INPUT, "%s:%d:%d: %s", path, why.line, why.column, why.text);
 }

@@ -44,6 +44,11 @@ Result json_read_choice(const JsonPlace *place, const json_t *value, const char 
 Result json_check_object(const JsonPlace *place, const json_t *value, const char *const *names,
                          Error *error);
 
+// For programs, not for the library, whose host may use jansson, too: notes from now on when memory
+// is short for a JSON value. Call it before any value is made.
+void json_memory_watch(void);
+// Notes that memory was short for a value of this thread.
+void json_memory_note(void);
 // Whether memory was short for any JSON value that this thread has made so far. Such values are
 // incomplete, because adding to NULL or adding NULL does nothing. Check this before writing a
 // document.
@@ -51,10 +56,11 @@ bool json_memory_short(void);
 // Clears json_memory_short, when the thread has no such values any more.
 void json_memory_forget(void);
 
-// Reads a value; the caller owns the reference. NULL with *why (unless that is NULL) if the text is
-// not JSON, or if memory was short: jansson then silently drops digits of numbers, so the value is
-// not used. json_memory_short distinguishes the two cases.
-json_t *json_read(const void *text, size_t size, size_t flags, json_error_t *why);
+// Reads an array or an object (RFC 8259) from text that has a zero after `size` bytes; the caller
+// owns the reference. NULL with *why (unless that is NULL) if the text is not JSON, has a string
+// with a zero, a number that overflows, or values that need more than 64 times its size and 64 MiB;
+// or if memory was short, which json_memory_short tells. `flags`: JSON_REJECT_DUPLICATES or 0.
+json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *why);
 
 // The value as text, which the caller frees with free(). NULL for no value, or if memory was short
 // for the text or any value.

@@ -9,9 +9,6 @@
 static const uint64_t DATA_BIT = UINT64_C(1) << 63;
 enum { DEEPEST = 64, KEY_BYTES = 16, HASH_BYTES = 32, EXPLICIT_TEXT = 0xff };
 
-static const double MOST_EACH_BYTE = 64, MOST_ANYHOW = 64e6;
-static const double MOST_PLACED_EACH_BYTE = 1024;
-
 // --- Groups and data.
 
 typedef struct Block {
@@ -205,8 +202,7 @@ static OgawaProperties read_compound(Ogawa *file, uint64_t place)
     if (data.size == 0 || !is_new(file, data.at)) return properties;
     // The shortest header has 6 bytes, which bounds their number.
     uint64_t most = data.size / 6 < group.size - 1 ? data.size / 6 : group.size - 1;
-    properties.property = calloc((size_t)most + 1, sizeof *properties.property);
-    if (!properties.property) reader_fail_memory(reader);
+    properties.property = reader_calloc(reader, (size_t)most + 1, sizeof *properties.property);
     Cursor cursor = {reader, data.at, data.at + data.size};
     while (reader_ok(reader) && cursor.at < cursor.end && properties.count < most) {
         OgawaProperty *property = &properties.property[properties.count];
@@ -286,16 +282,8 @@ double *ogawa_numbers(Ogawa *file, const OgawaProperty *property, uint32_t sampl
     Block data = open_data(reader, child_of(reader, group, place));
     uint64_t numbers = data.size > KEY_BYTES ? (data.size - KEY_BYTES) / pod.bytes : 0;
     if (property->extent > 1) numbers -= numbers % property->extent;
-    file->budget -= (double)numbers * (double)sizeof(double);
-    if (reader_ok(reader) && file->budget < 0)
-        reader_fail(reader,
-                    "'%s': its samples need more memory than %.0f times the size of the file",
-                    property->name, MOST_EACH_BYTE);
-    double *number = reader_ok(reader) ? malloc((size_t)numbers * sizeof *number + 1) : NULL;
-    if (!number) {
-        reader_fail_memory(reader);
-        return NULL;
-    }
+    double *number = reader_malloc(reader, numbers, sizeof *number);
+    if (!number) return NULL;
     for (uint64_t i = 0; i < numbers; ++i)
         number[i] = number_at(reader->data + data.at + KEY_BYTES + i * pod.bytes, pod);
     *count = (size_t)numbers;
@@ -309,9 +297,7 @@ static double *expand(Ogawa *file, const OgawaProperty *indices, double *value, 
     Reader *reader = file->reader;
     size_t items = *count / extent, wanted;
     double *index = ogawa_numbers(file, indices, 0, &wanted), *all = NULL;
-    if (index) file->budget -= (double)wanted * extent * (double)sizeof *all;
-    if (index && file->budget >= 0) all = malloc(wanted * extent * sizeof *all + 1);
-    if (index && !all) reader_fail_memory(reader);
+    if (index) all = reader_malloc(reader, (uint64_t)wanted * extent, sizeof *all);
     for (size_t i = 0; all && i < wanted; ++i) {
         if (!(index[i] >= 0 && index[i] < (double)items)) {
             reader_fail(reader,
@@ -361,8 +347,7 @@ static void read_samplings(Ogawa *file, uint64_t place)
     Reader *reader = file->reader;
     Block data = open_data(reader, place);
     uint64_t most = data.size / 16, at = data.at, end = data.at + data.size;
-    file->sampling = calloc((size_t)most + 1, sizeof *file->sampling);
-    if (!file->sampling) reader_fail_memory(reader);
+    file->sampling = reader_calloc(reader, (size_t)most + 1, sizeof *file->sampling);
     while (reader_ok(reader) && end - at >= 16) {
         OgawaSampling *sampling = &file->sampling[file->sampling_count];
         sampling->cycle = number_at(reader->data + at + 4, PODS[11]);
@@ -373,7 +358,7 @@ static void read_samplings(Ogawa *file, uint64_t place)
             reader_fail(reader, "%u sample times: the file is too small for so many", count);
             break;
         }
-        sampling->time = malloc(count * sizeof *sampling->time + 1);
+        sampling->time = reader_malloc(reader, count, sizeof *sampling->time);
         if (!sampling->time) {
             reader_fail_memory(reader);
             break;
@@ -430,27 +415,13 @@ double ogawa_even_time(const Ogawa *file, uint32_t sampling, uint32_t count, uin
     return fabs(even - own) * rate < 1e-6 ? own : even;
 }
 
-bool ogawa_allows(const Ogawa *file, uint64_t samples, uint64_t vertices)
-{
-    double bytes = 12.0 * (double)samples * (double)vertices;
-    if (bytes <= MOST_PLACED_EACH_BYTE * (double)file->reader->size + MOST_ANYHOW) return true;
-    reader_fail(
-        file->reader,
-        "%llu samples of %llu vertices need %.0f MB: more than %.0f times the size of the file",
-        (unsigned long long)samples, (unsigned long long)vertices, bytes / 1e6,
-        MOST_PLACED_EACH_BYTE);
-    return false;
-}
-
 // --- Objects.
 
 static OgawaObject *add_object(Ogawa *file, int parent, const char *name, uint32_t length)
 {
-    OgawaObject *more = realloc(file->object, ((size_t)file->count + 1) * sizeof *more);
-    if (!more) {
-        reader_fail_memory(file->reader);
-        return NULL;
-    }
+    OgawaObject *more =
+        reader_realloc(file->reader, file->object, (uint64_t)file->count + 1, sizeof *more);
+    if (!more) return NULL;
     file->object = more;
     OgawaObject *object = &more[file->count++];
     *object = (OgawaObject){.parent = parent};
@@ -520,14 +491,12 @@ static void read_unit(Ogawa *file, uint64_t place)
 
 Result ogawa_open(Ogawa *file, Reader *reader)
 {
-    *file = (Ogawa){.reader = reader,
-                    .up_z = -1,
-                    .budget = MOST_EACH_BYTE * (double)reader->size + MOST_ANYHOW};
+    *file = (Ogawa){.reader = reader, .up_z = -1};
     reader->at = 5;
     if (reader->size < 16 || reader->data[5] != 0xff)
         return reader_fail(
             reader, "the program that wrote the file did not finish it: expected a complete file");
-    file->seen = calloc(reader->size / 8 + 1, 1);
+    file->seen = reader_calloc(reader, reader->size / 8 + 1, 1);
     if (!file->seen) return reader_fail_memory(reader);
     Block top = open_group(reader, read_number(reader, 8));
     if (reader_ok(reader) && top.size < 6)

@@ -5,9 +5,7 @@
 // property's group contains data for each sample that differs from the previous one.
 //
 // Errors go through the reader, because files are untrusted; the place is the group or data in
-// question. No group of an object or its properties is read twice, and all samples together may
-// take at most 64 times the file's bytes (plus 64 MB), so that a small file cannot exhaust time or
-// memory.
+// question. No group of an object or its properties is read twice.
 #pragma once
 
 #include "base/reader.h"
@@ -56,7 +54,6 @@ typedef struct Ogawa {
     uint32_t sampling_count;
     uint64_t texts; // data of the headers' texts
     uint8_t *seen;  // one bit for each byte offset where an object's group may begin
-    double budget;  // bytes that samples may still use
 } Ogawa;
 
 bool ogawa_matches(const Bytes *bytes);
@@ -93,7 +90,3 @@ double ogawa_around(const Ogawa *file, uint32_t sampling, uint32_t count, double
 // distances. ogawa_rate: samples per second, 0 for a single sample.
 double ogawa_even_time(const Ogawa *file, uint32_t sampling, uint32_t count, uint32_t i);
 double ogawa_rate(const Ogawa *file, uint32_t sampling, uint32_t count);
-
-// Whether a file of this size may have `vertices` positions in each of `samples` samples; otherwise
-// fails the reader. Transforms have small samples, but each moves all vertices.
-bool ogawa_allows(const Ogawa *file, uint64_t samples, uint64_t vertices);

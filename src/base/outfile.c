@@ -31,6 +31,9 @@ static Result fail_to_write(const char *path, int reason, Error *error)
 
 // --- The place of the file.
 
+// Permissions of new folders, before the umask.
+enum { PUBLIC = 0777, PRIVATE = 0700 };
+
 // Refuses a file that the run reads, or that it has written as another output.
 static Result check_identity(const char *path, const struct stat *file, Error *error)
 {
@@ -50,9 +53,32 @@ static bool is_resolved(const Claim *claim, const char *path)
     return claim && !(claim->whole_folder && strchr(path + strlen(claim->before), '/'));
 }
 
+// Checks that the file of a confined claim stays in its folder.
+static Result check_confined(const Place *place, const char *path, const Claim *claim, Error *error)
+{
+    const char *const reasons[][2] = {
+        {OUTFILE_IS_LINK, "is a symbolic link, which is not followed"},
+        {OUTFILE_IS_OUTSIDE, "is outside the folder"},
+        {OUTFILE_IS_NO_FILE, "is a device or a pipe"}};
+    int reason = place->is_link                                   ? 0
+                 : !place_is_within(place, &claim->home)          ? 1
+                 : place->exists && !S_ISREG(place->file.st_mode) ? 2
+                                                                  : -1;
+    if (reason < 0) return RESULT_OK;
+    return error_set(error, RESULT_BAD_INPUT, "%.300s: %s%s", path, reasons[reason][claim->named],
+                     claim->named ? ": expected a plain file there" : "");
+}
+
+// Whether the claim is on numbered files or a folder. A single file may be a pipe or a device,
+// which the user has named.
+static bool is_one_of_many(const Claim *claim)
+{
+    return claim && (claim->after || claim->whole_folder);
+}
+
 // Finds where the file of this path goes and what is already there. A claim may have resolved the
 // folder.
-static Result find_place(Place *place, const char *path, Error *error)
+static Result find_place(Place *place, const char *path, bool follow, Error *error)
 {
     const Claim *claim = claims_find(path);
     bool confined = claim && claim->confined;
@@ -60,20 +86,17 @@ static Result find_place(Place *place, const char *path, Error *error)
     int reason =
         is_resolved(claim, path) ? place_copy(place, &claim->place, name) : place_find(place, path);
     if (!reason) {
-        reason = place_look(place, !confined);
+        reason = place_look(place, follow && !confined);
         if (!reason && place->exists && S_ISDIR(place->file.st_mode)) reason = EISDIR;
         if (reason) place_close(place);
     }
     if (reason) return fail_to_write(path, reason, error);
-    Result result = RESULT_OK;
-    if (confined && place->is_link)
-        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_LINK, path);
-    else if (confined && !place_is_within(place, &claim->home))
-        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_OUTSIDE, path);
-    else if (confined && place->exists && !S_ISREG(place->file.st_mode))
-        result = error_set(error, RESULT_BAD_INPUT, "%.300s: " OUTFILE_IS_NO_FILE, path);
-    else if (place->exists)
-        result = check_identity(path, &place->file, error);
+    Result result = confined ? check_confined(place, path, claim, error) : RESULT_OK;
+    bool stream = place->exists && !place->is_link && !S_ISREG(place->file.st_mode);
+    if (result == RESULT_OK && place->is_link) result = fail_to_write(path, ELOOP, error);
+    if (result == RESULT_OK && stream && (!follow || is_one_of_many(claim)))
+        result = error_set(error, RESULT_FAILED, "%.300s: " OUTFILE_IS_STREAM, path);
+    if (place->exists) THEN(result, check_identity(path, &place->file, error));
     if (result != RESULT_OK) place_close(place);
     return result;
 }
@@ -122,19 +145,33 @@ static int open_descriptor(OutFile *file, mode_t folders)
     return -1;
 }
 
+// Finds the place and opens the file. Another run may be removing the folder that it has made
+// (ENOENT): then makes it again. Returns -1 with errno on failure, also with a `*result`.
+static int find_and_open(OutFile *file, mode_t folders, Result *result, Error *error)
+{
+    int descriptor = -1;
+    for (int i = 0; i < OUTFILE_TRIES && descriptor < 0; ++i) {
+        if (i > 0) {
+            place_unmake(&file->place);
+            place_close(&file->place);
+        }
+        *result = find_place(&file->place, file->path, folders == PUBLIC, error);
+        if (*result != RESULT_OK) break;
+        descriptor = open_descriptor(file, folders);
+        if (descriptor < 0 && errno != ENOENT) break;
+    }
+    return descriptor;
+}
+
 static Result open_new(OutFile *file, const char *path, mode_t folders, Error *error)
 {
     bool to_stdout = outfile_is_stdout(path);
-    *file = (OutFile){.path = strdup(path)};
+    Result result = RESULT_OK;
+    *file = (OutFile){.path = strdup(path), .place = {.folder = -1}};
     if (!file->path) return fail_to_write(path, ENOMEM, error);
-    Result result = to_stdout ? RESULT_OK : find_place(&file->place, path, error);
-    if (result != RESULT_OK) {
-        outfile_discard(file);
-        return result;
-    }
     if (to_stdout) fflush(stdout);
-    int descriptor =
-        to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0) : open_descriptor(file, folders);
+    int descriptor = to_stdout ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                               : find_and_open(file, folders, &result, error);
     int reason = errno;
     if (descriptor >= 0) {
         file->stream = fdopen(descriptor, "wb");
@@ -144,13 +181,13 @@ static Result open_new(OutFile *file, const char *path, mode_t folders, Error *e
     if (file->stream) return RESULT_OK;
     place_unmake(&file->place);
     outfile_discard(file);
-    return fail_to_write(path, reason, error);
+    return result != RESULT_OK ? result : fail_to_write(path, reason, error);
 }
 
 Result outfile_open(OutFile *file, const char *path, Error *error)
 {
     Claim *claim = claims_find(path);
-    if (!claim || !claim->started) return open_new(file, path, 0777, error);
+    if (!claim || !claim->started) return open_new(file, path, PUBLIC, error);
     OutFile *started = claim->started;
     claim->started = NULL;
     *file = *started;
@@ -160,7 +197,7 @@ Result outfile_open(OutFile *file, const char *path, Error *error)
 
 Result outfile_open_private(OutFile *file, const char *path, Error *error)
 {
-    return open_new(file, path, 0700, error);
+    return open_new(file, path, PRIVATE, error);
 }
 
 Result outfile_try(const char *path, Error *error)
@@ -261,7 +298,7 @@ Result outfile_start(Claim *claim, Error *error)
 {
     OutFile *file = malloc(sizeof *file);
     if (!file) return fail_to_write(claim->before, ENOMEM, error);
-    Result result = open_new(file, claim->before, 0777, error);
+    Result result = open_new(file, claim->before, PUBLIC, error);
     if (result == RESULT_OK && !outfile_is_stdout(claim->before)) {
         // A pipe stays open, too: closing it would look like the end to its reader.
         claim->started = file;
@@ -293,8 +330,8 @@ static Result open_as_it_is(int *descriptor, const char *path, int flags, Error 
     Place place;
     struct stat file;
     *descriptor = -1;
-    TRY(find_place(&place, path, error));
-    int link = place.is_alias ? 0 : O_NOFOLLOW, reason = place_make(&place, 0777);
+    TRY(find_place(&place, path, true, error));
+    int link = place.is_alias ? 0 : O_NOFOLLOW, reason = place_make(&place, PUBLIC);
     if (!reason) {
         *descriptor = openat(place.folder, place.name, flags | O_CREAT | O_CLOEXEC | link, 0666);
         if (*descriptor < 0 || fstat(*descriptor, &file) != 0) reason = errno;
@@ -343,6 +380,10 @@ Result outfile_remove(const char *path, Error *error)
     int reason = claim && !claim->whole_folder
                      ? place_copy(&place, &claim->place, claim->place.name)
                      : place_find(&place, path);
+    if (!reason && claim && claim->confined && !place_is_within(&place, &claim->home)) {
+        place_close(&place);
+        return error_set(error, RESULT_BAD_INPUT, "%.300s: is outside the folder", path);
+    }
     if (!reason) {
         bool gone = *place.missing || unlinkat(place.folder, place.name, 0) == 0;
         reason = gone || errno == ENOENT ? 0 : errno;

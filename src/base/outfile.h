@@ -26,6 +26,9 @@ typedef struct OutFile {
     Leftover *leftover;
 } OutFile;
 
+// How often a folder that another run removes at the same time is made again.
+enum { OUTFILE_TRIES = 20 };
+
 // Why an output that a scene file names is refused, for messages that begin with its place.
 #define OUTFILE_ALLOWS     "expected --allow-paths, or the path on the command line"
 #define OUTFILE_IS_OUTSIDE "is outside the scene file's folder: " OUTFILE_ALLOWS
@@ -33,6 +36,9 @@ typedef struct OutFile {
     "is a symbolic link, which outputs of a scene file do not follow: " OUTFILE_ALLOWS
 #define OUTFILE_IS_NO_FILE                                                                         \
     "is a device or a pipe, to which a scene file may not write: " OUTFILE_ALLOWS
+
+// Why a pipe or device is refused in the place of a numbered file, a file of a folder or a cache.
+#define OUTFILE_IS_STREAM "cannot write: is a device or a pipe: expected a plain file"
 
 // Whether the path is "-", standard output.
 bool outfile_is_stdout(const char *path);
@@ -43,10 +49,12 @@ Result outfile_refuse_terminal(const char *path, Error *error);
 // Creates the temporary file and missing folders, with permissions by the umask, or opens standard
 // output directly. RESULT_FAILED with path and reason: a folder cannot be made, a folder has that
 // name, an existing file is read-only, ...; RESULT_USAGE for a file that the run reads or has
-// written; RESULT_BAD_INPUT for a link, device or pipe that an output of a scene file must not be.
+// written; RESULT_BAD_INPUT for a link, device or pipe that an output of a scene file must not be;
+// RESULT_FAILED for a device or pipe under the name of a numbered file or a file of a folder.
 Result outfile_open(OutFile *file, const char *path, Error *error);
 
-// The same, with new folders accessible only to the user (mode 0700); for caches.
+// The same for caches: new folders are accessible only to the user (mode 0700), and a link is not
+// followed: RESULT_FAILED.
 Result outfile_open_private(OutFile *file, const char *path, Error *error);
 
 // Checks that the file can be opened. Leaves nothing but folders that were missing. Errors of

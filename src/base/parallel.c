@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "base/parallel.h"
 
+#include "base/c_locale.h"
+
+#include <errno.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 static atomic_int useful; // threads; 0 if not counted yet
@@ -32,13 +36,30 @@ void parallel_set_threads(int count)
     atomic_store(&useful, count > PARALLEL_MOST ? PARALLEL_MOST : count < 0 ? 0 : count);
 }
 
+typedef struct Start {
+    void *(*work)(void *data);
+    void *data;
+} Start;
+
+static void *begin(void *data)
+{
+    Start start = *(Start *)data;
+    free(data);
+    c_locale_enter();
+    return start.work(start.data);
+}
+
 int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data)
 {
+    Start *start = malloc(sizeof *start);
+    if (!start) return ENOMEM;
+    *start = (Start){work, data};
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    int reason = pthread_create(thread, NULL, work, data);
+    int reason = pthread_create(thread, NULL, begin, start);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (reason) free(start);
     return reason;
 }
 

@@ -14,8 +14,8 @@ int parallel_threads(void);
 void parallel_set_threads(int count);
 
 // Starts a thread that receives no signals, because the main thread handles them. SIGPIPE and
-// SIGXFSZ are blocked, too, so that a failed write returns an error. Returns the result of
-// pthread_create.
+// SIGXFSZ are blocked, too, so that a failed write returns an error. The thread has the "C" locale
+// (c_locale.h). Returns the result of pthread_create, or ENOMEM.
 int parallel_start(pthread_t *thread, void *(*work)(void *data), void *data);
 
 // Calls work(data, part) for part = 0 .. parts - 1, and returns when all are done. The calling

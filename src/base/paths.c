@@ -297,11 +297,22 @@ static Result check_all(const Uses *all, Error *error)
 
 // --- Claims.
 
-// Makes the folder and checks that a file can be created in it.
+// Makes the folder, holds it and checks that a file can be created in it. Another run may be
+// removing the folder that it has made (ENOENT): then makes it again.
 static Result try_folder(Claim *claim, const PathUse *use, Error *error)
 {
-    int reason = place_make(&claim->place, 0777);
-    if (!reason) reason = outfile_try_folder(&claim->place);
+    int reason = ENOENT;
+    for (int i = 0; i < OUTFILE_TRIES && reason == ENOENT; ++i) {
+        if (i > 0) {
+            place_close(&claim->place);
+            reason = place_find(&claim->place, claim->before);
+            if (reason) break;
+        }
+        reason = place_make(&claim->place, 0777);
+        if (reason) continue;
+        place_hold(&claim->place);
+        reason = outfile_try_folder(&claim->place);
+    }
     return reason ? fail(use, reason, error) : RESULT_OK;
 }
 
@@ -331,6 +342,10 @@ static Result claim_one(const Spot *spot, const PathUse *use, Error *error)
     Claim claim = {.name = use->name, .confined = use->home, .place = {.folder = -1}};
     if (use->home) TRY(check_home(spot, use, &claim.home, error));
     int reason = find_claim(&claim, spot, use);
+    if (!reason && use->role == PATH_UPDATED && (claim.whole_folder || claim.after)) {
+        claim.confined = claim.named = true;
+        if (fstat(claim.place.folder, &claim.home) != 0) reason = errno;
+    }
     Claim *kept = reason ? NULL : claims_add(&claim);
     if (!kept) {
         place_close(&claim.place);

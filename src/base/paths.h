@@ -10,7 +10,9 @@ typedef enum PathRole {
     PATH_TARGET,  // a file that is written, or a folder or pattern of numbered files (target.h)
     PATH_KEPT,    // a file that is written in place and may be read before
     PATH_FOLDER,  // a folder of files that are written
-    PATH_UPDATED, // a file, folder or pattern that is read and then written
+    // A file, folder or pattern that is read and then written. Files of a folder or pattern must
+    // stay in the folder, and links there are not followed.
+    PATH_UPDATED,
 } PathRole;
 
 typedef struct PathUse {

@@ -6,6 +6,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 enum { MOST_LINKS = 40 }; // the limit of Linux
@@ -151,12 +152,38 @@ int place_make(Place *place, mode_t mode)
     return reason;
 }
 
+// Opens the folder again, since a handle by O_PATH takes no lock. -1 with errno.
+static int open_for_lock(const Place *place)
+{
+    return openat(place->folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+void place_hold(Place *place)
+{
+    int folder = open_for_lock(place);
+    if (folder < 0) return;
+    while (flock(folder, LOCK_SH) != 0 && errno == EINTR) continue;
+    close(place->folder);
+    place->folder = folder;
+}
+
+// Whether no other process holds the folder; if so, none can hold it until `*lock` is closed.
+static bool hold_alone(Place *place, int *lock)
+{
+    flock(place->folder, LOCK_UN); // its own lock, if it has one
+    *lock = open_for_lock(place);
+    return *lock >= 0 && flock(*lock, LOCK_EX | LOCK_NB) == 0;
+}
+
 void place_unmake(Place *place)
 {
     while (place->made && *place->made) {
+        int lock;
+        bool alone = hold_alone(place, &lock);
         char *name = pop(place->made);
         int above = open_folder(place->folder, "..");
-        bool gone = above >= 0 && unlinkat(above, name, AT_REMOVEDIR) == 0;
+        bool gone = alone && above >= 0 && unlinkat(above, name, AT_REMOVEDIR) == 0;
+        if (lock >= 0) close(lock);
         *name = 0; // now ends with the slash of the parent folder
         if (!gone) *place->made = 0;
         if (above < 0) continue;

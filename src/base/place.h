@@ -30,7 +30,12 @@ int place_look(Place *place, bool follow);
 // Makes the missing folders. `mode`: their permissions before the umask.
 int place_make(Place *place, mode_t mode);
 
-// Removes the folders that place_make made, if they are empty.
+// Keeps other processes from removing the folder (place_unmake) until the place and its copies are
+// closed. The folder may just have been removed: then nothing can be created in it (ENOENT). Does
+// nothing where folders cannot be read or locked.
+void place_hold(Place *place);
+
+// Removes the folders that place_make made, if they are empty and no other process holds them.
 void place_unmake(Place *place);
 
 // Whether the folder is `home` or below it.

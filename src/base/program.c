@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "base/program.h"
+#include "base/bytes.h"
+#include "base/interrupt_install.h"
+#include "base/json.h"
 #include "base/outfile.h"
 
 #include <errno.h>
@@ -14,6 +17,13 @@ static bool reader_left(void)
 {
     struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
     return poll(&output, 1, 0) > 0 && (output.revents & POLLERR);
+}
+
+void program_begin(int argc, char *const *argv)
+{
+    bytes_set_command_line(argc, argv);
+    interrupt_install();
+    json_memory_watch();
 }
 
 int program_end(const char *name, Result result, Error *error)

@@ -2,6 +2,7 @@
 #include "base/reader.h"
 
 #include <endian.h>
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +11,16 @@
 
 Reader reader_begin_binary(const char *path, const Bytes *bytes, Error *error)
 {
-    return (Reader){.path = path, .data = bytes->data, .size = bytes->size, .error = error};
+    const uint64_t size = bytes->size;
+    const uint64_t more = size > READER_FREE_BYTES ? size - READER_FREE_BYTES : 0;
+    return (Reader){.path = path,
+                    .data = bytes->data,
+                    .size = bytes->size,
+                    .error = error,
+                    .memory = READER_MEMORY_TIMES * size + READER_MEMORY_BYTES,
+                    .placed = READER_PLACED_TIMES * more,
+                    .work =
+                        READER_WORK_STEPS + READER_WORK_TIMES * size + READER_PLACED_STEPS * more};
 }
 
 Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error)
@@ -18,12 +28,6 @@ Reader reader_begin_text(const char *path, const Bytes *bytes, Error *error)
     Reader reader = reader_begin_binary(path, bytes, error);
     reader.line = 1;
     return reader;
-}
-
-void reader_end(Reader *reader)
-{
-    if (reader->locale) freelocale(reader->locale);
-    reader->locale = NULL;
 }
 
 Result reader_fail(Reader *reader, const char *format, ...)
@@ -48,6 +52,115 @@ Result reader_fail_memory(Reader *reader)
         reader->result = error_set(reader->error, RESULT_FAILED, "%s: no memory", reader->path);
     return reader->result;
 }
+
+// --- The budget.
+
+static void fail_budget(Reader *reader, uint64_t times, int bytes)
+{
+    reader_fail(reader,
+                "needs more memory than a file of this size may use: expected at most %llu times "
+                "its size and %d MiB",
+                (unsigned long long)times, bytes >> 20);
+}
+
+// The product in bytes; UINT64_MAX if it is larger.
+static uint64_t multiply(uint64_t count, uint64_t size)
+{
+    uint64_t bytes;
+    return __builtin_mul_overflow(count, size, &bytes) ? UINT64_MAX : bytes;
+}
+
+bool reader_charge(Reader *reader, uint64_t count, uint64_t size)
+{
+    uint64_t bytes = multiply(count, size);
+    if (!reader_ok(reader)) return false;
+    if (bytes > reader->memory) {
+        fail_budget(reader, READER_MEMORY_TIMES, READER_MEMORY_BYTES);
+        return false;
+    }
+    reader->memory -= bytes;
+    return true;
+}
+
+// malloc's own bytes for each block; they count where blocks are many and small.
+enum { BLOCK_BYTES = 16 };
+
+static void *check(Reader *reader, void *block)
+{
+    if (!block) reader_fail_memory(reader);
+    return block;
+}
+
+void *reader_malloc(Reader *reader, uint64_t count, size_t size)
+{
+    if (!reader_charge(reader, 1, BLOCK_BYTES) || !reader_charge(reader, count, size)) return NULL;
+    return check(reader, malloc(count * size + 1));
+}
+
+void *reader_calloc(Reader *reader, uint64_t count, size_t size)
+{
+    if (!reader_charge(reader, 1, BLOCK_BYTES) || !reader_charge(reader, count, size)) return NULL;
+    return check(reader, calloc(count * size + 1, 1));
+}
+
+void *reader_realloc(Reader *reader, void *block, uint64_t count, size_t size)
+{
+    uint64_t bytes = multiply(count, size), before = block ? malloc_usable_size(block) : 0;
+    if (!reader_charge(reader, 1, bytes > before ? bytes - before : 0) ||
+        (!block && !reader_charge(reader, 1, BLOCK_BYTES)))
+        return NULL;
+    return check(reader, realloc(block, bytes + 1));
+}
+
+void *reader_malloc_frames(Reader *reader, uint64_t frames, uint64_t vertices)
+{
+    const uint64_t bytes = multiply(multiply(frames, vertices), 3 * sizeof(float));
+    if (!reader_ok(reader)) return NULL;
+    uint64_t placed = bytes < reader->placed ? bytes : reader->placed;
+    if (bytes - placed > reader->memory) {
+        reader_fail(reader,
+                    "%llu frames of %llu vertices need %llu MB: more than a file of this size may "
+                    "use",
+                    (unsigned long long)frames, (unsigned long long)vertices,
+                    (unsigned long long)(bytes / 1000000));
+        return NULL;
+    }
+    reader->placed -= placed;
+    reader->memory -= bytes - placed;
+    return check(reader, malloc(bytes + 1));
+}
+
+bool reader_work(Reader *reader, uint64_t count, uint64_t steps)
+{
+    uint64_t all = multiply(count, steps);
+    if (!reader_ok(reader)) return false;
+    if (all > reader->work) {
+        reader_fail(reader, "takes more time than a file of this size may take");
+        return false;
+    }
+    reader->work -= all;
+    return true;
+}
+
+Reader reader_begin_inner(Reader *outer, const char *path, const Bytes *bytes)
+{
+    Reader inner = reader_begin_binary(path, bytes, outer->error);
+    inner.result = outer->result;
+    inner.memory = outer->memory;
+    inner.placed = outer->placed;
+    inner.work = outer->work;
+    return inner;
+}
+
+void reader_end_inner(Reader *outer, const Reader *inner)
+{
+    outer->result = inner->result;
+    outer->memory = inner->memory;
+    outer->placed = inner->placed;
+    outer->work = inner->work;
+}
+
+// --- Binary.
 
 // The next `size` bytes, or NULL after an error.
 static const uint8_t *take_bytes(Reader *reader, size_t size, const char *what)
@@ -342,16 +455,6 @@ static bool convert_special(const uint8_t *word, size_t length, float *value)
     return false;
 }
 
-static float convert_slowly(Reader *reader)
-{
-    if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!reader->locale) {
-        reader_fail_memory(reader);
-        return 0.0f;
-    }
-    return strtof_l((const char *)reader->data + reader->at, NULL, reader->locale);
-}
-
 float reader_read_number(Reader *reader, const char *what)
 {
     if (!reader_ok(reader)) return 0.0f;
@@ -361,7 +464,7 @@ float reader_read_number(Reader *reader, const char *what)
     const uint8_t *end = scan_decimal(start, &decimal);
     float value = 0.0f;
     if (end != start && (is_blank(*end) || *end == '\n' || end == reader->data + reader->size)) {
-        if (!convert_fast(&decimal, &value)) value = convert_slowly(reader);
+        if (!convert_fast(&decimal, &value)) value = strtof((const char *)start, NULL);
         reader->at = (size_t)(end - reader->data);
         return value;
     }

@@ -7,7 +7,7 @@
 static bool add_sample(UsdSamples *samples, Reader *reader, double time)
 {
     UsdValues values = {.time = time};
-    UsdValues *more = realloc(samples->sample, (samples->count + 1) * sizeof *more);
+    UsdValues *more = reader_realloc(reader, samples->sample, (samples->count + 1), sizeof *more);
     if (!more) return reader_fail_memory(reader) == RESULT_OK;
     samples->sample = more;
     usd_text_read_values(reader, &values);
@@ -57,8 +57,14 @@ void usd_samples_destroy(UsdSamples *samples)
 double usd_samples_find(const UsdSamples *samples, double time, const float **a, const float **b)
 {
     const UsdValues *sample = samples->sample;
-    size_t next = 0, last = samples->count - 1;
-    while (samples->timed && next < last && sample[next].time < time) ++next;
+    size_t next = 0, last = samples->timed ? samples->count - 1 : 0;
+    while (next < last) { // the first one that is not earlier
+        size_t middle = next + (last - next) / 2;
+        if (sample[middle].time < time)
+            next = middle + 1;
+        else
+            last = middle;
+    }
     size_t before = next > 0 && sample[next].time > time ? next - 1 : next;
     *a = sample[before].value;
     *b = sample[next].value;

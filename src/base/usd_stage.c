@@ -171,11 +171,9 @@ static void read_body(UsdStage *stage, int prim, void *object, int depth)
 
 static int add_prim(UsdStage *stage, int parent)
 {
-    UsdPrim *more = realloc(stage->prim, ((size_t)stage->prim_count + 1) * sizeof *more);
-    if (!more) {
-        reader_fail_memory(stage->reader);
-        return -1;
-    }
+    UsdPrim *more =
+        reader_realloc(stage->reader, stage->prim, (uint64_t)stage->prim_count + 1, sizeof *more);
+    if (!more) return -1;
     stage->prim = more;
     stage->prim[stage->prim_count] = (UsdPrim){.parent = parent};
     return stage->prim_count++;
@@ -276,7 +274,10 @@ Result usd_stage_read(UsdStage *stage, Reader *reader, const UsdSchema *schema, 
 
 void usd_stage_destroy(UsdStage *stage)
 {
-    for (int i = 0; i < stage->prim_count; ++i) usd_transform_destroy(&stage->prim[i].transform);
+    for (int i = 0; i < stage->prim_count; ++i) {
+        usd_transform_destroy(&stage->prim[i].transform);
+        free(stage->prim[i].world);
+    }
     free(stage->prim);
     *stage = (UsdStage){0};
 }
@@ -314,28 +315,48 @@ uint32_t usd_stage_count_idle(const UsdStage *stage)
     return idle;
 }
 
-void usd_stage_find_matrix(const UsdStage *stage, int prim, double time, double matrix[4][4])
+// The prim's place in the world at a time; NULL after an error. Remembers it, since many curves and
+// meshes lie below one transform.
+static UsdWorld *find_world(const UsdStage *stage, int p, double time)
 {
-    bool reset;
     Reader *reader = stage->reader;
-    usd_transform_evaluate(&stage->prim[prim].transform, reader, time, matrix, &reset);
-    for (int p = stage->prim[prim].parent; p >= 0 && !reset && reader_ok(reader);
-         p = stage->prim[p].parent) {
-        double above[4][4];
-        usd_transform_evaluate(&stage->prim[p].transform, reader, time, above, &reset);
-        usd_transform_multiply(matrix, matrix, above);
-    }
+    UsdPrim *prim = &stage->prim[p];
+    UsdWorld *world = prim->world;
+    if (world && (world->still || world->time == time)) return world;
+    if (!world) world = prim->world = reader_malloc(reader, 1, sizeof *world);
+    if (!world) return NULL;
+    bool reset;
+    usd_transform_evaluate(&prim->transform, reader, time, world->matrix, &reset);
+    world->time = time;
+    world->still = prim->transform.still;
+    if (reset || prim->parent < 0) return world;
+    UsdWorld *above = reader_ok(reader) ? find_world(stage, prim->parent, time) : NULL;
+    if (!above) return NULL;
+    usd_transform_multiply(world->matrix, world->matrix, above->matrix);
+    world->still = world->still && above->still;
+    return world;
 }
 
-void usd_stage_add_times(const UsdStage *stage, int prim, const UsdSamples *samples,
-                         UsdTimes *times)
+void usd_stage_find_matrix(const UsdStage *stage, int prim, double time, double matrix[4][4])
+{
+    reader_work(stage->reader, 64, 10); // its parents
+    const UsdWorld *world = reader_ok(stage->reader) ? find_world(stage, prim, time) : NULL;
+    if (world)
+        memcpy(matrix, world->matrix, sizeof world->matrix);
+    else
+        memset(matrix, 0, 16 * sizeof(double));
+}
+
+void usd_stage_add_times(UsdStage *stage, int prim, const UsdSamples *samples, UsdTimes *times)
 {
     for (size_t k = 0; samples->timed && k < samples->count; ++k)
         usd_times_add(times, stage->reader, samples->sample[k].time);
-    for (int p = prim; p >= 0; p = stage->prim[p].parent)
+    for (int p = prim; p >= 0 && !stage->prim[p].timed; p = stage->prim[p].parent) {
+        stage->prim[p].timed = true;
         for (size_t op = 0; op < stage->prim[p].transform.op_count; ++op) {
             const UsdTrack *track = &stage->prim[p].transform.op[op].track;
             for (size_t k = 0; track->timed && k < track->count; ++k)
                 usd_times_add(times, stage->reader, track->time[k]);
         }
+    }
 }

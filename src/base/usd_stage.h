@@ -13,10 +13,18 @@
 // For messages: how to flatten a file of several layers.
 extern const char USD_FLATTEN[];
 
+// The matrix of a prim in the world, at the time for which it was last asked.
+typedef struct UsdWorld {
+    double matrix[4][4], time;
+    bool still; // it is the same at all times
+} UsdWorld;
+
 typedef struct UsdPrim {
     int parent; // -1: none
     UsdTransform transform;
+    UsdWorld *world; // NULL: not yet asked for
     bool hidden, abstract, instancer;
+    bool timed; // usd_stage_add_times has its times
 } UsdPrim;
 
 // `to` is the schema's data; an object is what the schema makes of a prim.
@@ -65,6 +73,5 @@ uint32_t usd_stage_count_idle(const UsdStage *stage);
 // A prim's matrix at a time code, including its parents: p' = p M. Fails the reader.
 void usd_stage_find_matrix(const UsdStage *stage, int prim, double time, double matrix[4][4]);
 
-// Adds the times of the samples and of the transforms that move them.
-void usd_stage_add_times(const UsdStage *stage, int prim, const UsdSamples *samples,
-                         UsdTimes *times);
+// Adds the times of the samples and of the transforms that move them, each transform's once.
+void usd_stage_add_times(UsdStage *stage, int prim, const UsdSamples *samples, UsdTimes *times);

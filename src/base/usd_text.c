@@ -128,11 +128,7 @@ static double read_number(Reader *reader, bool single)
     char text[USD_WORD_SIZE], *end;
     Reader before = *reader;
     usd_text_read_word(reader, text);
-    if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!reader->locale) return (double)reader_fail_memory(reader);
-    double value = single ? (double)strtof_l(text, &end, reader->locale)
-                          : strtod_l(text, &end, reader->locale);
-    before.locale = reader->locale;
+    double value = single ? (double)strtof(text, &end) : strtod(text, &end);
     if (!reader_ok(reader) || (end != text && !*end)) return value;
     *reader = before;
     reader_fail(reader, "expected a number, got '%.40s'", text);
@@ -154,8 +150,8 @@ static double read_double(Reader *reader)
 static bool add_value(Reader *reader, UsdValues *values, float value)
 {
     if (values->count == values->room) {
-        size_t room = 2 * values->room + 1024;
-        float *more = realloc(values->value, room * sizeof *more);
+        size_t room = 2 * values->room + 12;
+        float *more = reader_realloc(reader, values->value, room, sizeof *more);
         if (!more) return reader_fail_memory(reader) == RESULT_OK;
         values->value = more;
         values->room = room;
@@ -195,11 +191,8 @@ bool usd_text_next_sample(Reader *reader, double *time)
         text[i + 1] = 0;
         usd_text_step(reader);
     }
-    if (!reader->locale) reader->locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    *time = reader->locale ? strtod_l(text, &end, reader->locale) : 0;
-    if (!reader->locale)
-        reader_fail_memory(reader);
-    else if (reader_ok(reader) && (end == text || *end || !(*time > -1e15 && *time < 1e15)))
+    *time = strtod(text, &end);
+    if (reader_ok(reader) && (end == text || *end || !(*time > -1e15 && *time < 1e15)))
         reader_fail(reader, "expected a time, got '%.40s'", text);
     usd_text_expect(reader, ':');
     return reader_ok(reader);

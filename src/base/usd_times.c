@@ -10,7 +10,7 @@ void usd_times_add(UsdTimes *times, Reader *reader, double time)
 {
     if (times->count == times->room) {
         uint32_t room = 2 * times->room + 64;
-        double *more = realloc(times->time, room * sizeof *more);
+        double *more = reader_realloc(reader, times->time, room, sizeof *more);
         if (!more) {
             reader_fail_memory(reader);
             return;

@@ -11,52 +11,65 @@ static const char INVERT[] = "!invert!", RESET[] = "!resetXformStack!", PREFIX[]
 
 // --- Reading.
 
-static UsdOp *find_op(const UsdTransform *transform, const char *name)
+static UsdOp *find_op(const UsdTransform *transform, Reader *reader, const char *name)
 {
-    for (size_t i = 0; i < transform->op_count; ++i)
+    reader_work(reader, transform->op_count, 10);
+    for (size_t i = 0; i < transform->op_count && reader_ok(reader); ++i)
         if (strcmp(transform->op[i].name, name) == 0) return &transform->op[i];
     return NULL;
 }
 
+// Whether `name` (after the prefix) is this operation, such as "translate" or "translate:pivot".
+static bool is_kind(const char *name, const char *kind)
+{
+    size_t length = strlen(kind);
+    return strncmp(name, kind, length) == 0 && (!name[length] || name[length] == ':');
+}
+
+// How many numbers a value has at most.
+static uint32_t find_width(const char *name)
+{
+    const char *kind = name + strlen(PREFIX);
+    if (is_kind(kind, "translate") || is_kind(kind, "scale")) return 3;
+    if (is_kind(kind, "orient")) return 4;
+    if (strncmp(kind, "rotate", 6) == 0) return strcspn(kind + 6, ":") == 1 ? 1 : 3;
+    return 16;
+}
+
 static UsdOp *add_op(UsdTransform *transform, Reader *reader, const char *name)
 {
-    UsdOp *more = realloc(transform->op, (transform->op_count + 1) * sizeof *more);
-    if (!more) {
-        reader_fail_memory(reader);
-        return NULL;
-    }
+    UsdOp *more = reader_realloc(reader, transform->op, transform->op_count + 1, sizeof *more);
+    if (!more) return NULL;
     transform->op = more;
     more += transform->op_count++;
-    *more = (UsdOp){.line = reader->line};
+    *more = (UsdOp){.line = reader->line, .track.width = find_width(name)};
     snprintf(more->name, sizeof more->name, "%s", name);
     return more;
 }
 
 static void add_sample(UsdTrack *track, Reader *reader, double time)
 {
+    double value[16] = {0};
     if (track->count == track->room) {
-        size_t room = 2 * track->room + 4;
-        double *times = realloc(track->time, room * sizeof *times);
+        size_t room = 2 * track->room + 1;
+        double *times = reader_realloc(reader, track->time, room, sizeof *times);
         if (times) track->time = times;
-        double(*values)[16] = realloc(track->value, room * sizeof *values);
+        double *values = reader_realloc(reader, track->value, room, track->width * sizeof *values);
         if (values) track->value = values;
-        if (!times || !values) {
-            reader_fail_memory(reader);
-            return;
-        }
+        if (!times || !values) return;
         track->room = room;
     }
     if (track->count && track->timed && time <= track->time[track->count - 1])
         reader_fail(reader, "time sample %g: expected a time after that of the previous sample",
                     time);
     track->time[track->count] = time;
-    memset(track->value[track->count], 0, sizeof *track->value);
-    usd_text_read_numbers(reader, track->value[track->count++], 16);
+    usd_text_read_numbers(reader, value, (int)track->width);
+    memcpy(track->value + track->count++ * track->width, value, track->width * sizeof *value);
 }
 
 void usd_transform_read_op(UsdTransform *transform, Reader *reader, const char *name, bool timed)
 {
-    UsdOp *op = find_op(transform, name);
+    UsdOp *op = find_op(transform, reader, name);
     if (!op) op = add_op(transform, reader, name);
     if (!op) return;
     if (op->track.timed && !timed) { // time samples override the default value
@@ -81,11 +94,8 @@ void usd_transform_read_order(UsdTransform *transform, Reader *reader)
     usd_text_expect(reader, '[');
     while (reader_ok(reader) && !usd_text_take(reader, ']')) {
         char(*more)[USD_WORD_SIZE] =
-            realloc(transform->order, (transform->order_count + 1) * sizeof *more);
-        if (!more) {
-            reader_fail_memory(reader);
-            return;
-        }
+            reader_realloc(reader, transform->order, transform->order_count + 1, sizeof *more);
+        if (!more) return;
         transform->order = more;
         usd_text_read_string(reader, more[transform->order_count++]);
         usd_text_take(reader, ',');
@@ -100,6 +110,7 @@ void usd_transform_destroy(UsdTransform *transform)
     }
     free(transform->op);
     free(transform->order);
+    free(transform->named);
     *transform = (UsdTransform){0};
 }
 
@@ -190,29 +201,28 @@ static void mix_orientations(double to[4], const double a[4], const double b[4],
 
 static void value_at(const UsdTrack *track, double time, bool orientation, double value[16])
 {
-    size_t next = 0;
-    while (next < track->count && track->time[next] < time) ++next;
-    if (!track->timed || next == 0 || next == track->count) {
-        memcpy(value, track->value[!track->timed || next == 0 ? 0 : next - 1],
-               sizeof *track->value);
+    size_t next = 0, end = track->timed ? track->count : 0;
+    const size_t width = track->width;
+    while (next < end) { // the first one that is not earlier
+        size_t middle = next + (end - next) / 2;
+        if (track->time[middle] < time)
+            next = middle + 1;
+        else
+            end = middle;
+    }
+    if (next == 0 || next == track->count) {
+        memcpy(value, track->value + (next == 0 ? 0 : next - 1) * width, width * sizeof *value);
         return;
     }
-    const double *a = track->value[next - 1], *b = track->value[next];
+    const double *a = track->value + (next - 1) * width, *b = a + width;
     double share = (time - track->time[next - 1]) / (track->time[next] - track->time[next - 1]);
-    for (int k = 0; k < 16; ++k) value[k] = share < 1 ? a[k] + share * (b[k] - a[k]) : b[k];
+    for (size_t k = 0; k < width; ++k) value[k] = share < 1 ? a[k] + share * (b[k] - a[k]) : b[k];
     if (orientation && share < 1) mix_orientations(value, a, b, share);
-}
-
-// Whether `name` (after the prefix) is this operation, such as "translate" or "translate:pivot".
-static bool is_kind(const char *name, const char *kind)
-{
-    size_t length = strlen(kind);
-    return strncmp(name, kind, length) == 0 && (!name[length] || name[length] == ':');
 }
 
 static bool set_matrix(double m[4][4], const char *kind, const UsdTrack *track, double time)
 {
-    double v[16];
+    double v[16] = {0};
     value_at(track, time, is_kind(kind, "orient"), v);
     set_identity(m);
     if (is_kind(kind, "translate")) {
@@ -240,11 +250,30 @@ static bool set_matrix(double m[4][4], const char *kind, const UsdTrack *track, 
     return true;
 }
 
-void usd_transform_evaluate(const UsdTransform *transform, Reader *reader, double time,
+// Finds the operations that the order names.
+static void find_named(UsdTransform *transform, Reader *reader)
+{
+    transform->still = true;
+    if (transform->named || !transform->order_count) return;
+    transform->named = reader_calloc(reader, transform->order_count, sizeof *transform->named);
+    for (size_t i = 0; transform->named && i < transform->order_count; ++i) {
+        const char *name = transform->order[i];
+        if (strncmp(name, INVERT, strlen(INVERT)) == 0) name += strlen(INVERT);
+        if (strcmp(name, RESET) != 0) transform->named[i] = find_op(transform, reader, name);
+    }
+    for (size_t i = 0; transform->named && i < transform->order_count; ++i) {
+        const UsdOp *op = transform->named[i];
+        transform->still = transform->still && !(op && op->track.timed && op->track.count > 1);
+    }
+}
+
+void usd_transform_evaluate(UsdTransform *transform, Reader *reader, double time,
                             double matrix[4][4], bool *reset)
 {
     set_identity(matrix);
     *reset = false;
+    if (!transform->named) find_named(transform, reader);
+    reader_work(reader, transform->order_count, 200);
     for (size_t i = 0; i < transform->order_count && reader_ok(reader); ++i) {
         const char *name = transform->order[i];
         bool inverse = strncmp(name, INVERT, strlen(INVERT)) == 0;
@@ -255,7 +284,7 @@ void usd_transform_evaluate(const UsdTransform *transform, Reader *reader, doubl
             continue;
         }
         if (inverse) name += strlen(INVERT);
-        const UsdOp *op = find_op(transform, name);
+        const UsdOp *op = transform->named[i];
         reader->line = op ? op->line : transform->line;
         if (!op || op->track.count == 0)
             reader_fail(reader, "xformOpOrder names '%.60s', which has no value", name);

@@ -117,7 +117,7 @@ Result zip_open(Zip *zip, Reader *reader)
     if (count > ZIP_MOST_FILES)
         return reader_fail(reader, "%llu files in a zip archive: expected at most %d",
                            (unsigned long long)count, ZIP_MOST_FILES);
-    zip->file = calloc(count + 1, sizeof *zip->file);
+    zip->file = reader_calloc(reader, count + 1, sizeof *zip->file);
     if (!zip->file) return reader_fail_memory(reader);
     reader->at = at;
     for (zip->count = 0; zip->count < count && reader_ok(reader); zip->count++)
@@ -171,10 +171,11 @@ Result zip_read(Zip *zip, const ZipFile *file, Bytes *content, uint8_t **owned)
     *owned = NULL;
     zip->reader->at = file->at;
     TRY(check_size(zip, file));
+    if (!reader_work(zip->reader, file->packed + file->size, 2)) return zip->reader->result;
     if (file->method == STORED) {
         *content = (Bytes){(uint8_t *)(uintptr_t)zip->reader->data + file->at, file->size};
     } else {
-        *owned = malloc(file->size + 1);
+        *owned = malloc(file->size + 1); // `budget` counts it
         if (!*owned) return reader_fail_memory(zip->reader);
         zip->budget -= file->size;
         *content = (Bytes){*owned, file->size};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-bench: measures the accuracy of the tractrix and of solvers, the speed of solvers and of
 // drawing, and compiles all shaders.
-#include "base/interrupt_install.h"
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/quote.h"
@@ -483,7 +482,7 @@ static Result run(int argc, char **argv, Error *error)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
-    interrupt_install();
+    program_begin(argc, argv);
     Result result = assumptions_take_option(&argc, argv, &error);
     THEN(result, run(argc, argv, &error));
     return program_end("tractrix-bench", result, &error);

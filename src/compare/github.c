@@ -4,6 +4,7 @@
 #include "compare/github.h"
 
 #include "base/outfile.h"
+#include "base/utf8.h"
 #include "compare/ci_path.h"
 
 #include <stdlib.h>
@@ -14,16 +15,28 @@ enum { MOST_ERRORS = 10, MOST_ROWS = 1000 };
 
 // --- Annotations.
 
+// Writes the next character of a text, or an escape such as \x1b if it is not visible, and steps
+// over it: logs are read in terminals, too.
+static void put_character(FILE *stream, const char **text)
+{
+    size_t length = utf8_visible(*text, strnlen(*text, 4));
+    if (length)
+        fwrite(*text, 1, length, stream);
+    else
+        fprintf(stream, "\\x%02x", (unsigned)(unsigned char)**text);
+    *text += length ? length : 1;
+}
+
 // Escapes text for a workflow command, which must be one line. In a property, ':' and ',' are
 // escaped, too.
 static void put_data(FILE *stream, const char *text, bool is_property)
 {
-    for (; *text; ++text) {
+    while (*text) {
         bool is_special = strchr("%\r\n", *text) || (is_property && strchr(":,", *text));
         if (is_special)
-            fprintf(stream, "%%%02X", (unsigned)(unsigned char)*text);
+            fprintf(stream, "%%%02X", (unsigned)(unsigned char)*text++);
         else
-            fputc(*text, stream);
+            put_character(stream, &text);
     }
 }
 
@@ -68,9 +81,12 @@ void github_print_annotations(const PairList *list, const Verdict *verdicts, FIL
 static void put_code(FILE *stream, const char *text)
 {
     fputc('`', stream);
-    for (; *text; ++text) {
+    while (*text) {
         if (*text == '|') fputc('\\', stream);
-        fputc(*text == '`' ? '\'' : (unsigned char)*text < 0x20 ? '?' : *text, stream);
+        if (*text == '`')
+            fputc('\'', stream), ++text;
+        else
+            put_character(stream, &text);
     }
     fputc('`', stream);
 }

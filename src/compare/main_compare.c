@@ -2,7 +2,6 @@
 // tractrix-compare: measures how much images differ, frame by frame, and compares that with limits.
 #include "base/clock.h"
 #include "base/interrupt.h"
-#include "base/interrupt_install.h"
 #include "base/options.h"
 #include "base/outfile.h"
 #include "base/paths.h"
@@ -579,7 +578,7 @@ int main(int argc, char **argv)
     Command command;
     Error error = {{0}};
     bool done = false;
-    interrupt_install();
+    program_begin(argc, argv);
     Result result = parse(&command, argc, argv, &done, &error);
     if (result == RESULT_OK && !done)
         result = command.shrink ? shrink(&command, &error) : run(&command, &error);

@@ -24,7 +24,7 @@ static Result refuse_cache(const CacheStrands *strands, const char *what, Error 
 static Result read_fps(CacheStrands *strands, Error *error)
 {
     const Bytes *text = &strands->cache.scene;
-    json_t *scene = json_read(text->data, text->size, 0, NULL);
+    json_t *scene = json_read((const char *)text->data, text->size, 0, NULL);
     if (!scene && json_memory_short())
         return error_set(error, RESULT_FAILED, "%s: no memory for its scene",
                          strands->cache.file.path);

@@ -2,7 +2,6 @@
 // tractrix-convert: describes hair files, edits hair, and writes it in other formats.
 #include "base/activity.h"
 #include "base/interrupt.h"
-#include "base/interrupt_install.h"
 #include "base/json.h"
 #include "base/options.h"
 #include "base/params.h"
@@ -501,7 +500,7 @@ int main(int argc, char **argv)
     Job job = {0};
     Error error = {{0}};
     bool done = false;
-    interrupt_install();
+    program_begin(argc, argv);
     Result result = parse(&job, argc, argv, &done, &error);
     if (result == RESULT_OK && !done) result = run(&job, &error);
     activity_end();

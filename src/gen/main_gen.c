@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-gen: makes hair, and the mesh that it grows on.
 #include "base/activity.h"
-#include "base/interrupt_install.h"
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/quote.h"
@@ -336,7 +335,7 @@ static Result run(int argc, char **argv, Error *error)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
-    interrupt_install();
+    program_begin(argc, argv);
     Result result = run(argc, argv, &error);
     activity_end();
     return program_end("tractrix-gen", result, &error);

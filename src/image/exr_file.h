@@ -21,13 +21,14 @@ typedef enum ExrLayer {
 typedef struct ExrFile {
     const Image *image;      // IMAGE_FLOAT: linear, primaries of Rec. 709, premultiplied
     const Image *layers;     // [EXR_LAYERS] of the same size; NULL if there are none
+    bool alpha;              // write A, which is 1, also if the image has no alpha
     bool floats;             // 32 bits per channel, otherwise 16 (depth always has 32)
     const ImageTexts *texts; // written as attributes of type string; NULL if there are none
     // Attributes of these names, columns of a matrix for column vectors; NULL if there are none.
     const float (*world_to_camera)[4], (*world_to_ndc)[4];
 } ExrFile;
 
-// Writes the channels R, G, B and A (1 if the image has no alpha) and those of the layers:
+// Writes the channels R, G, B, A if the image has alpha or `alpha` is set, and those of the layers:
 // coverage, Z (float), tangent.X, .Y and .Z (unit vectors in the world, 0 if empty), id (24 bits in
 // a uint, 0 if empty). Blocks of 16 rows, ZIP. If one of the last three layers is empty at a pixel,
 // all three are. Values beyond the range of half become infinite. The same content gives the same

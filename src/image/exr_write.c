@@ -60,13 +60,19 @@ typedef struct Writer {
     uint32_t *rows; // [CHANNELS_MOST][ROWS][width] floats, or strand numbers
 } Writer;
 
+static bool has_channel(const ExrFile *file, const Channel *channel)
+{
+    if (channel->layer >= 0) return file->layers != NULL;
+    return channel->number < file->image->channels || file->alpha;
+}
+
 static exr_result_t add_channels(const Writer *writer)
 {
     exr_result_t code = EXR_ERR_SUCCESS;
     for (int c = 0; c < CHANNELS_MOST && code == EXR_ERR_SUCCESS; ++c) {
         const Channel *channel = &CHANNELS[c];
         bool widened = channel->type == EXR_PIXEL_HALF && writer->file->floats;
-        if (channel->layer >= 0 && !writer->file->layers) continue;
+        if (!has_channel(writer->file, channel)) continue;
         code = exr_add_channel(writer->stream.context, EXR_PART, channel->name,
                                widened ? EXR_PIXEL_FLOAT : channel->type, EXR_PERCEPTUALLY_LINEAR,
                                1, 1);
@@ -152,7 +158,7 @@ static void fill_rows(const Writer *writer, int y, int rows)
     size_t width = (size_t)writer->file->image->width;
     for (int c = 0; c < CHANNELS_MOST; ++c) {
         const Channel *channel = &CHANNELS[c];
-        if (channel->layer >= 0 && !writer->file->layers) continue;
+        if (!has_channel(writer->file, channel)) continue;
         const Image *image =
             channel->layer < 0 ? writer->file->image : &writer->file->layers[channel->layer];
         const float *from = (const float *)(const void *)image->pixels;

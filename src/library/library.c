@@ -54,15 +54,18 @@ void library_give(void *to, const void *from)
 
 uint32_t tractrix_version_number(void)
 {
+    LIBRARY_CALL;
     return TRACTRIX_VERSION_NUMBER;
 }
 
 const char *tractrix_version(void)
 {
+    LIBRARY_CALL;
     return TRACTRIX_VERSION;
 }
 
 void tractrix_set_threads(int count)
 {
+    LIBRARY_CALL;
     parallel_set_threads(count);
 }

@@ -9,6 +9,7 @@
 
 #include "library/tractrix.h"
 
+#include "base/c_locale.h"
 #include "base/error.h"
 #include "gpu/gpu.h"
 #include "run/images.h"
@@ -19,6 +20,18 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <sys/types.h>
+
+// --- Calls.
+
+static inline void library_leave(const locale_t *before)
+{
+    c_locale_leave(*before);
+}
+
+// The first statement of each public function: until the function returns, the calling thread has
+// the "C" locale, whatever locale the host has chosen.
+#define LIBRARY_CALL                                                                               \
+    __attribute__((cleanup(library_leave), unused)) const locale_t library_before = c_locale_enter()
 
 // --- Errors and structs of callers.
 

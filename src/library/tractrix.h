@@ -7,6 +7,8 @@
 //   line end, into *error; `error` may be NULL. A function that fails changes none of its outputs,
 //   with two exceptions: it sets the handle that it should have created to NULL, and
 //   tractrix_compare may have written a part of `map`.
+//   NULL for a required argument is TRACTRIX_USAGE; functions that return no result then return 0,
+//   "" or NULL.
 // Ownership: the library copies the arrays and texts that it gets. A handle belongs to the caller,
 //   who frees it with the ..._destroy function of its type; these functions accept NULL. You may
 //   destroy handles in any order: a device or a simulation is freed after everything that was
@@ -14,8 +16,10 @@
 // Threads: only one thread at a time may use a device and the handles that were created from it.
 //   Different devices, scenes and pictures may be used by different threads at the same time.
 // Side effects: the library prints nothing, installs no signal handlers and never ends the program.
-//   It opens only files that an argument or a parameter names. It does not change which OpenGL or
-//   EGL context is current.
+//   It opens only files that an argument or a parameter names, and reads only plain files, no pipes
+//   or devices. It does not change which OpenGL or
+//   EGL context is current, and no setting of another library, such as the allocator of jansson.
+// Locale: the locale of the host has no effect. Numbers in texts have a decimal point.
 // fork(): a child process may only destroy the devices, simulations and renderers of its parent.
 //   This frees nothing. All calls that need such a device fail with TRACTRIX_NO_GL, and so does
 //   tractrix_device_open if it was called before the fork: drivers do not survive it. Fork first

@@ -90,6 +90,7 @@ TractrixResult tractrix_compare(TractrixFigures *figures, float *map, const Trac
                                 const TractrixImage *b, const TractrixImage *mask,
                                 const TractrixLimits *limits, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     return library_end(
         compare(figures, map, (const TractrixImage *const[]){a, b, mask}, limits, &why), &why,

@@ -120,6 +120,7 @@ void library_drop_device(TractrixDevice *device)
 
 void tractrix_device_destroy(TractrixDevice *device)
 {
+    LIBRARY_CALL;
     if (device) library_drop_device(device);
 }
 
@@ -200,6 +201,7 @@ static Result open_device(TractrixDevice **device, const TractrixDeviceOptions *
 TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDeviceOptions *options,
                                     TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!device) return library_refuse(error, "device: got NULL");
     *device = NULL;
@@ -208,6 +210,7 @@ TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDevic
 
 TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!device) return library_refuse(error, "device: got NULL");
     Result result = create(device, &why);
@@ -225,6 +228,8 @@ TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *er
 
 const char *tractrix_device_text(const TractrixDevice *device, const char *what)
 {
+    LIBRARY_CALL;
+    if (!device) return "";
     const Gpu *gpu = &device->gpu;
     const struct {
         const char *what, *text;

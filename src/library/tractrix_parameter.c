@@ -112,6 +112,7 @@ const ParamInfo *library_parameter(const char *name)
 
 const TractrixParameter *tractrix_parameter(size_t index)
 {
+    LIBRARY_CALL;
     prepare();
     return index < table.count ? &table.row[index] : NULL;
 }

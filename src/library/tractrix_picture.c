@@ -76,6 +76,10 @@ Result library_take_image(TractrixImage *to, const TractrixImage *image, const c
         return error_set(error, RESULT_USAGE,
                          "%s.row_bytes: got %zu, expected at least %zu, a multiple of %zu", name,
                          to->row_bytes, row, channel);
+    if (to->row_bytes > (size_t)PTRDIFF_MAX / (size_t)to->height)
+        return error_set(error, RESULT_USAGE,
+                         "%s.row_bytes: got %zu, expected an image that fits into memory", name,
+                         to->row_bytes);
     return to->pixels ? RESULT_OK : error_set(error, RESULT_USAGE, "%s.pixels: got NULL", name);
 }
 
@@ -147,6 +151,7 @@ static Result make_picture(TractrixPicture **picture, const Image *image, Error 
 
 void tractrix_picture_destroy(TractrixPicture *picture)
 {
+    LIBRARY_CALL;
     if (!picture) return;
     free(picture->image.pixels);
     free(picture);
@@ -155,6 +160,7 @@ void tractrix_picture_destroy(TractrixPicture *picture)
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,
                                      TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     Image image = {0};
     if (!picture) return library_refuse(error, "picture: got NULL");
@@ -172,7 +178,8 @@ TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path
 
 const TractrixImage *tractrix_picture_image(const TractrixPicture *picture)
 {
-    return &picture->image;
+    LIBRARY_CALL;
+    return picture ? &picture->image : NULL;
 }
 
 static bool ends_with(const char *path, const char *suffix)
@@ -204,6 +211,7 @@ static Result encode(const char *path, const Image *image, Bytes *bytes, Error *
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     TractrixImage from;
     Image copy = {0};

@@ -134,6 +134,7 @@ TractrixResult tractrix_simulation_map(TractrixSimulation *simulation, int secti
                                        TractrixPart part, TractrixPositions *positions,
                                        TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     Mapping mapping;
     TractrixPositions given;
@@ -195,6 +196,7 @@ TractrixResult tractrix_simulation_copy_to_gl(TractrixSimulation *simulation, in
                                               TractrixPart part, uint32_t buffer, size_t offset,
                                               TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     Copying copying = {.buffer = buffer, .offset = (int64_t)offset};
     if (!simulation) return library_refuse(error, "simulation: got NULL");

@@ -78,6 +78,7 @@ static Result close_renderer(void *data, Error *error)
 
 void tractrix_renderer_destroy(TractrixRenderer *renderer)
 {
+    LIBRARY_CALL;
     Error unused;
     if (!renderer) return;
     TractrixSimulation *simulation = renderer->simulation;
@@ -109,6 +110,7 @@ TractrixResult tractrix_renderer_create(TractrixRenderer **renderer, TractrixSim
                                         int width, int height, TractrixFormat format,
                                         TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!renderer) return library_refuse(error, "renderer: got NULL");
     *renderer = NULL;
@@ -191,6 +193,7 @@ static Result draw(void *data, Error *error)
 TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
                                TractrixImage *image, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     TractrixImage to;
     if (!renderer) return library_refuse(error, "renderer: got NULL");

@@ -105,6 +105,7 @@ static void forget_meshes(TractrixScene *scene)
 
 void tractrix_scene_destroy(TractrixScene *scene)
 {
+    LIBRARY_CALL;
     if (!scene) return;
     scene_destroy(&scene->scene);
     for (uint32_t i = 0; i < scene->array_count; ++i) {
@@ -151,6 +152,7 @@ static TractrixResult finish(TractrixScene **scene, Result result, const Error *
 
 TractrixResult tractrix_scene_create(TractrixScene **scene, const char *look, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     *scene = NULL;
@@ -164,10 +166,11 @@ static Result check_file(const char *path, Error *error)
     if (strcmp(path, "-") == 0)
         return error_set(error, RESULT_USAGE, "-: expected a file: the library reads no streams");
     struct stat status;
-    if (access(path, R_OK) == 0 && stat(path, &status) == 0 && !S_ISDIR(status.st_mode))
-        return RESULT_OK;
+    int descriptor = bytes_open_plain(path, &status);
+    if (descriptor >= 0) close(descriptor);
+    if (descriptor >= 0 && !S_ISDIR(status.st_mode)) return RESULT_OK;
     Bytes bytes; // gives the same message as the programs
-    Result result = bytes_read_file(&bytes, path, error);
+    Result result = bytes_read_plain(&bytes, path, error);
     bytes_destroy(&bytes);
     return result;
 }
@@ -205,6 +208,7 @@ static Result read_scene(TractrixScene **scene, const char *path, Error *error)
 
 TractrixResult tractrix_scene_read(TractrixScene **scene, const char *path, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     *scene = NULL;
@@ -217,6 +221,7 @@ TractrixResult tractrix_scene_read(TractrixScene **scene, const char *path, Trac
 TractrixResult tractrix_scene_parse(TractrixScene **scene, const char *json, const char *folder,
                                     TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     char *place = NULL;
     if (!scene) return library_refuse(error, "scene: got NULL");
@@ -266,6 +271,7 @@ static Result set(TractrixScene *scene, int section, const char *name, const cha
 TractrixResult tractrix_scene_set(TractrixScene *scene, int section, const char *name,
                                   const char *text, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene || !name || !text) return library_refuse(error, "scene, name or text: got NULL");
     return library_end(set(scene, section, name, text, &why), &why, error);
@@ -280,10 +286,12 @@ static size_t put(const char *from, char *text, size_t room)
 size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *name, char *text,
                           size_t room)
 {
+    LIBRARY_CALL;
     const ParamInfo *info = name ? params_find(name) : NULL;
     uint32_t i = section < 0 ? 0 : (uint32_t)section;
     if (text && room) *text = 0;
-    if (!info || (info->scope == SCOPE_SECTION && i >= scene->scene.section_count)) return 0;
+    if (!scene || !info || (info->scope == SCOPE_SECTION && i >= scene->scene.section_count))
+        return 0;
     if (info->scope != SCOPE_SECTION) i = 0; // the run, or the first body
     char *value = params_format(info, scene_params(&scene->scene, info->scope, i));
     size_t length = value ? put(value, text, room) : 0;
@@ -293,9 +301,11 @@ size_t tractrix_scene_get(const TractrixScene *scene, int section, const char *n
 
 size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
 {
+    LIBRARY_CALL;
     Scene whole;
     size_t length = 0;
     if (text && room) *text = 0;
+    if (!scene) return 0;
     if (library_copy_scene(&whole, scene, NULL) == RESULT_OK) {
         json_t *json = scene_to_json(&whole);
         char *dumped = json_text(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
@@ -309,12 +319,14 @@ size_t tractrix_scene_json(const TractrixScene *scene, char *text, size_t room)
 
 uint32_t tractrix_scene_section_count(const TractrixScene *scene)
 {
-    return scene->scene.section_count;
+    LIBRARY_CALL;
+    return scene ? scene->scene.section_count : 0;
 }
 
 uint32_t tractrix_scene_body_count(const TractrixScene *scene)
 {
-    return scene->scene.body_count;
+    LIBRARY_CALL;
+    return scene ? scene->scene.body_count : 0;
 }
 
 // --- Arrays.
@@ -331,12 +343,20 @@ static Result check_strands(const TractrixStrands *strands, uint64_t *vertices, 
         (strands->vertices_each < 2 || strands->vertices_each > STRANDS_MAX_SIZE))
         return error_set(error, RESULT_USAGE, "strands.vertices_each: got %u, expected 2 to %d",
                          strands->vertices_each, STRANDS_MAX_SIZE);
-    *vertices = 0;
-    for (uint32_t s = 0; s < strands->strand_count; ++s)
-        *vertices += strands->sizes ? strands->sizes[s] : strands->vertices_each;
-    if (*vertices > UINT32_MAX)
-        return error_set(error, RESULT_USAGE, "strands: got %llu vertices, expected at most %u",
-                         (unsigned long long)*vertices, UINT32_MAX);
+    *vertices = strands->sizes ? 0 : (uint64_t)strands->strand_count * strands->vertices_each;
+    for (uint32_t s = 0; strands->sizes && s < strands->strand_count && *vertices < UINT32_MAX;
+         ++s) {
+        uint32_t size = strands->sizes[s];
+        if (size < 2 || size > STRANDS_MAX_SIZE)
+            return error_set(error, RESULT_BAD_INPUT,
+                             "strands: strand %u has %u vertices: expected 2 to %d", s, size,
+                             STRANDS_MAX_SIZE);
+        *vertices += size;
+    }
+    if (*vertices >= UINT32_MAX)
+        return error_set(error, RESULT_USAGE,
+                         "strands: got %llu vertices or more, expected fewer than 2^32 - 1",
+                         (unsigned long long)*vertices);
     return RESULT_OK;
 }
 
@@ -404,6 +424,7 @@ static Result add_strands(TractrixScene *scene, const char *name, const Tractrix
 TractrixResult tractrix_scene_add_strands(TractrixScene *scene, const char *name,
                                           const TractrixStrands *strands, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     return library_end(add_strands(scene, name, strands, &why), &why, error);
@@ -476,6 +497,7 @@ static Result set_only_mesh(TractrixScene *scene, const TractrixMesh *mesh, Erro
 TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh *mesh,
                                        TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     return library_end(set_only_mesh(scene, mesh, &why), &why, error);
@@ -484,6 +506,7 @@ TractrixResult tractrix_scene_set_mesh(TractrixScene *scene, const TractrixMesh 
 TractrixResult tractrix_scene_set_body_mesh(TractrixScene *scene, uint32_t body,
                                             const TractrixMesh *mesh, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!scene) return library_refuse(error, "scene: got NULL");
     return library_end(set_mesh(scene, body, mesh, &why), &why, error);

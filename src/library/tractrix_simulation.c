@@ -54,6 +54,7 @@ void library_drop_simulation(TractrixSimulation *simulation)
 
 void tractrix_simulation_destroy(TractrixSimulation *simulation)
 {
+    LIBRARY_CALL;
     if (simulation) library_drop_simulation(simulation);
 }
 
@@ -133,6 +134,7 @@ static Result create(TractrixSimulation **simulation, TractrixDevice *device,
 TractrixResult tractrix_simulation_create(TractrixSimulation **simulation, TractrixDevice *device,
                                           const TractrixScene *scene, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!simulation) return library_refuse(error, "simulation: got NULL");
     *simulation = NULL;
@@ -147,12 +149,14 @@ TractrixResult tractrix_simulation_create(TractrixSimulation **simulation, Tract
 
 const char *tractrix_simulation_messages(const TractrixSimulation *simulation)
 {
-    return simulation->messages ? simulation->messages : "";
+    LIBRARY_CALL;
+    return simulation && simulation->messages ? simulation->messages : "";
 }
 
 double tractrix_simulation_time(const TractrixSimulation *simulation)
 {
-    return simulation->simulation.time;
+    LIBRARY_CALL;
+    return simulation ? simulation->simulation.time : 0;
 }
 
 // --- Stepping.
@@ -175,6 +179,7 @@ static Result set(TractrixSimulation *simulation, const char *name, const char *
 TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const char *name,
                                        const char *text, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!simulation || !name || !text)
         return library_refuse(error, "simulation, name or text: got NULL");
@@ -277,6 +282,7 @@ static Result place_head(TractrixSimulation *simulation, uint32_t body, const Tr
 TractrixResult tractrix_simulation_place_body(TractrixSimulation *simulation, uint32_t body,
                                               const TractrixPose *head, TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!simulation || !head) return library_refuse(error, "simulation or head: got NULL");
     return library_end(place_head(simulation, body, head, &why), &why, error);
@@ -285,6 +291,7 @@ TractrixResult tractrix_simulation_place_body(TractrixSimulation *simulation, ui
 TractrixResult tractrix_simulation_advance(TractrixSimulation *simulation, const TractrixPose *head,
                                            TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     Result result = RESULT_OK;
     if (!simulation) return library_refuse(error, "simulation: got NULL");
@@ -332,6 +339,7 @@ TractrixResult tractrix_simulation_place_body_mesh(TractrixSimulation *simulatio
                                                    const float *position, uint32_t vertex_count,
                                                    TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!simulation || !position) return library_refuse(error, "simulation or position: got NULL");
     return library_end(place_mesh(simulation, body, position, vertex_count, &why), &why, error);
@@ -341,6 +349,7 @@ TractrixResult tractrix_simulation_advance_mesh(TractrixSimulation *simulation,
                                                 const float *position, uint32_t vertex_count,
                                                 TractrixError *error)
 {
+    LIBRARY_CALL;
     Error why = {{0}};
     if (!simulation || !position) return library_refuse(error, "simulation or position: got NULL");
     Result result = check_only(simulation, "position", "tractrix_simulation_place_body_mesh", &why);

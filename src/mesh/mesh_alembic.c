@@ -67,8 +67,7 @@ static void open_all(AbcMeshes *all, MeshSamples *samples)
 {
     Ogawa *file = &all->alembic.file;
     uint32_t curves = 0;
-    all->mesh = calloc((size_t)file->count + 1, sizeof *all->mesh);
-    if (!all->mesh) reader_fail_memory(file->reader);
+    all->mesh = reader_calloc(file->reader, (uint64_t)file->count + 1, sizeof *all->mesh);
     for (int i = 0; i < file->count && reader_ok(file->reader); ++i) {
         const char *schema = file->object[i].schema;
         curves += begins_with(schema, "AbcGeom_Curve");
@@ -98,11 +97,12 @@ static double *read_fixed(AbcMeshes *all, const AbcMesh *mesh, const char *name,
     return reader_ok(file->reader) ? ogawa_numbers(file, property, 0, count) : NULL;
 }
 
-static bool make_room(MeshSamples *samples, uint64_t more)
+static bool make_room(Reader *reader, MeshSamples *samples, uint64_t more)
 {
     uint64_t count = samples->triangle_count + more;
     if (count > UINT32_MAX / 8) return false;
-    uint32_t(*triangle)[3] = realloc(samples->triangle, (size_t)count * sizeof *triangle + 1);
+    uint32_t(*triangle)[3] =
+        reader_realloc(reader, samples->triangle, (size_t)count, sizeof *triangle);
     if (triangle) samples->triangle = triangle;
     return triangle;
 }
@@ -114,7 +114,7 @@ static void read_faces(AbcMeshes *all, const AbcMesh *mesh, MeshSamples *samples
     size_t faces, corners, at = 0;
     double *size = read_fixed(all, mesh, ".faceCounts", &faces);
     double *corner = read_fixed(all, mesh, ".faceIndices", &corners);
-    if (reader_ok(reader) && !make_room(samples, corners)) reader_fail_memory(reader);
+    if (reader_ok(reader) && !make_room(reader, samples, corners)) reader_fail_memory(reader);
     for (size_t f = 0; f < faces && reader_ok(reader); ++f) {
         if (!(size[f] >= 0 && size[f] <= (double)(corners - at))) {
             reader_fail(reader, "%s: face %zu has %g corners: expected at most %zu", path, f,
@@ -164,6 +164,7 @@ static void place(AbcMeshes *all, const AbcMesh *mesh, double time, float (*to)[
         if (share > 0 && share < 1) next = read_sample(all, mesh, b);
     }
     alembic_matrix(&all->alembic, mesh->object, time, matrix);
+    reader_work(all->alembic.file.reader, mesh->count + 1, 50);
     for (uint64_t v = 0; v < mesh->count && reader_ok(all->alembic.file.reader); ++v) {
         double p[3];
         for (int k = 0; k < 3; ++k) {
@@ -186,8 +187,7 @@ static void read(MeshSamples *samples, Reader *reader)
     samples->count = all.samples;
     for (uint32_t i = 0; i < all.count && reader_ok(reader); ++i)
         read_faces(&all, &all.mesh[i], samples);
-    if (reader_ok(reader) && ogawa_allows(file, samples->count, samples->vertex_count) &&
-        mesh_samples_create(samples, reader))
+    if (reader_ok(reader) && mesh_samples_create(samples, reader))
         for (uint32_t s = 0; s < all.samples && reader_ok(reader); ++s)
             for (uint32_t i = 0; i < all.count; ++i)
                 place(&all, &all.mesh[i], ogawa_even_time(file, all.sampling, all.samples, s),

@@ -51,7 +51,7 @@ static void take_faces(MeshSamples *samples, Reader *reader, const NpyArray *arr
     }
     if (samples->triangle) return;
     samples->triangle_count = faces * (corners - 2);
-    samples->triangle = calloc(samples->triangle_count, sizeof *samples->triangle);
+    samples->triangle = reader_calloc(reader, samples->triangle_count, sizeof *samples->triangle);
     if (!samples->triangle) {
         reader_fail_memory(reader);
         return;
@@ -123,11 +123,10 @@ static void read_member(MeshSamples *samples, Reader *reader, Zip *zip, const Zi
         return;
     }
     snprintf(path, sizeof path, "%s: %s", reader->path, file->name);
-    Reader inner = reader_begin_binary(path, &content, reader->error);
+    Reader inner = reader_begin_inner(reader, path, &content);
     if (npy_array_read(&array, &inner) == RESULT_OK)
         take_array(samples, &inner, &array, file->name);
-    reader->result = inner.result;
-    reader_end(&inner);
+    reader_end_inner(reader, &inner);
     free(owned);
 }
 

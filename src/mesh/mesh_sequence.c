@@ -31,8 +31,8 @@ bool mesh_samples_create(MeshSamples *samples, Reader *reader)
     if (count > UINT32_MAX / 2 || vertices > UINT32_MAX / 4 || vertices > MOST_VERTICES / count)
         return reader_fail(reader, "%llu samples of %llu vertices do not fit into memory",
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
-    samples->position = malloc(count * vertices * sizeof *samples->position);
-    return samples->position || reader_fail_memory(reader) == RESULT_OK;
+    samples->position = reader_malloc_frames(reader, count, vertices);
+    return samples->position;
 }
 
 static void mesh_samples_destroy(MeshSamples *samples)
@@ -58,14 +58,9 @@ static const MeshSequenceFormat *find_format(const char *path, const Bytes *byte
 bool mesh_sequence_matches(const char *path)
 {
     uint8_t first[16];
-    struct stat about;
     if (is_pattern(path)) return true;
-    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode)) return false;
-    FILE *file = fopen(path, "rb");
-    if (!file) return false;
-    const Bytes bytes = {first, fread(first, 1, sizeof first, file)};
-    fclose(file);
-    return find_format(path, &bytes) != NULL;
+    const Bytes bytes = {first, bytes_peek(path, first, sizeof first)};
+    return bytes.size > 0 && find_format(path, &bytes) != NULL;
 }
 
 void mesh_sequence_destroy(MeshSequence *sequence)
@@ -253,7 +248,6 @@ static Result read_file(MeshSequence *sequence, Mesh *mesh, const Mesh *rest, co
             (format->text ? reader_begin_text : reader_begin_binary)(path, &bytes, error);
         format->read(&samples, &reader);
         result = reader.result;
-        reader_end(&reader);
     } else {
         result = error_set(error, RESULT_BAD_INPUT,
                            "%s: no sequence of meshes: expected x_%%04d.obj, .npz, .npy, .pc2, "

@@ -47,11 +47,8 @@ static void *begin_mesh(void *to, const char *type, int prim)
     UsdMeshes *all = to;
     all->curves += strcmp(type, "BasisCurves") == 0;
     if (strcmp(type, "Mesh") != 0) return NULL;
-    UsdMesh *mesh = calloc(1, sizeof *mesh);
-    if (mesh)
-        mesh->prim = prim;
-    else
-        reader_fail_memory(all->reader);
+    UsdMesh *mesh = reader_calloc(all->reader, 1, sizeof *mesh);
+    if (mesh) mesh->prim = prim;
     return mesh;
 }
 
@@ -95,7 +92,7 @@ static void add_mesh(UsdMeshes *all, UsdMesh *mesh)
     if (mesh->skinned && !mesh->points.timed)
         reader_fail(reader, "a mesh that a skeleton moves: expected baked points "
                             "(points.timeSamples), from the program that exported it");
-    UsdMesh *more = realloc(all->mesh, ((size_t)all->count + 1) * sizeof *more);
+    UsdMesh *more = reader_realloc(reader, all->mesh, ((size_t)all->count + 1), sizeof *more);
     if (!more) {
         reader_fail_memory(reader);
         return;
@@ -146,7 +143,8 @@ static void read_faces(Reader *reader, const UsdMesh *mesh, MeshSamples *samples
     const UsdValues *corners = find_fixed(reader, &mesh->corners, "faceVertexIndices", line);
     if (!reader_ok(reader)) return;
     const uint64_t most = samples->triangle_count + corners->count;
-    uint32_t(*triangle)[3] = realloc(samples->triangle, (size_t)most * sizeof *triangle + 1);
+    uint32_t(*triangle)[3] =
+        reader_realloc(reader, samples->triangle, (size_t)most, sizeof *triangle);
     if (!triangle) {
         reader_fail_memory(reader);
         return;
@@ -205,6 +203,7 @@ static void place(const UsdMeshes *all, const UsdMesh *mesh, double time, float 
     const double share = usd_samples_find(&mesh->points, time, &a, &b);
     double m[4][4];
     usd_stage_find_matrix(&all->stage, mesh->prim, time, m);
+    reader_work(all->reader, mesh->points.sample[0].count / 3 + 1, 50);
     for (size_t v = 0; v < mesh->points.sample[0].count / 3 && reader_ok(all->reader); ++v) {
         double p[3];
         for (size_t k = 0; k < 3; ++k) {
@@ -220,15 +219,8 @@ static void read_positions(UsdMeshes *all, const UsdTimes *times, MeshSamples *s
 {
     Reader *reader = all->reader;
     samples->count = times->count ? times->count : 1;
-    const double size = 12.0 * (double)samples->count * (double)samples->vertex_count;
-    if (size > 64.0 * ((double)reader->size + 1e6))
-        reader_fail(
-            reader,
-            "%llu samples of %llu vertices need %.0f MB: more than 64 times the size of the file",
-            (unsigned long long)samples->count, (unsigned long long)samples->vertex_count,
-            size / 1e6);
     if (!mesh_samples_create(samples, reader)) return;
-    for (uint64_t s = 0; s < samples->count; ++s)
+    for (uint64_t s = 0; s < samples->count && reader_ok(reader); ++s)
         for (uint32_t i = 0; i < all->count; ++i)
             place(all, &all->mesh[i], times->count ? times->time[s] : 0,
                   samples->position + s * samples->vertex_count + all->mesh[i].first);

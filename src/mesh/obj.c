@@ -124,7 +124,7 @@ static void *pile_add(Reader *reader, Pile *pile, size_t size)
     }
     if (pile->count == pile->capacity) {
         size_t capacity = pile->capacity ? 2 * pile->capacity : 1024;
-        void *data = realloc(pile->data, capacity * size);
+        void *data = reader_realloc(reader, pile->data, capacity, size);
         if (!data) {
             reader_fail_memory(reader);
             return NULL;
@@ -145,7 +145,6 @@ static void read_vector(Obj *obj, ObjStatement kind)
         Reader before = *reader;
         vector[i] = reader_read_number(reader, KINDS[kind].expected);
         if (!reader_ok(reader) || fabsf(vector[i]) <= MESH_MOST_COORDINATE) continue;
-        before.locale = reader->locale;
         *reader = before;
         reader_fail_expected(reader, KINDS[kind].expected);
     }
@@ -231,9 +230,9 @@ static void turn(float to[3], const float from[3], float unit, bool up_z)
 }
 
 // Replaces computed normals by those of the file, where it has some. False if memory is short.
-static bool apply_normals(Mesh *mesh, const Obj *obj, bool up_z)
+static bool apply_normals(Mesh *mesh, Obj *obj, bool up_z)
 {
-    float(*sum)[3] = calloc((size_t)mesh->vertex_count + 1, sizeof *sum);
+    float(*sum)[3] = reader_calloc(&obj->reader, (uint64_t)mesh->vertex_count + 1, sizeof *sum);
     if (!sum) return false;
     const uint32_t *vertex = obj->triangles[OBJ_VERTEX].data;
     const uint32_t *normal = obj->triangles[OBJ_NORMAL].data;
@@ -255,12 +254,13 @@ static bool apply_normals(Mesh *mesh, const Obj *obj, bool up_z)
 }
 
 // Fills the mesh; with texture coordinates if any corner has some. False if memory is short.
-static bool make_mesh(Mesh *mesh, const Obj *obj, float unit, bool up_z)
+static bool make_mesh(Mesh *mesh, Obj *obj, float unit, bool up_z)
 {
     const float(*position)[3] = obj->vectors[OBJ_VERTEX].data;
     const uint32_t *vertex = obj->triangles[OBJ_VERTEX].data, *uv = obj->triangles[OBJ_UV].data;
     const Pile *uvs = &obj->vectors[OBJ_UV];
     size_t vertices = obj->vectors[OBJ_VERTEX].count, triangles = obj->triangles[0].count;
+    if (!reader_charge(&obj->reader, vertices + triangles + uvs->count, 24)) return false;
     if (mesh_create(mesh, (uint32_t)vertices, (uint32_t)triangles, NULL) != RESULT_OK) return false;
     for (size_t v = 0; v < vertices; v++) turn(mesh->position[v], position[v], unit, up_z);
     for (size_t i = 0; i < 3 * triangles; i++) mesh->triangle[i / 3][i % 3] = vertex[i] - 1;
@@ -285,7 +285,6 @@ Result obj_read_mesh_bytes(Mesh *mesh, const char *path, const Bytes *bytes, flo
         mesh_destroy(mesh);
         reader_fail_memory(&obj.reader);
     }
-    reader_end(&obj.reader);
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         free(obj.vectors[kind].data);
         free(obj.triangles[kind].data);

@@ -35,8 +35,7 @@ static void read_vertices(PlyMesh *ply, const PlyElement *element, float unit, b
     if (!element->has[X] || !element->has[Y] || !element->has[Z])
         reader_fail(reader, "vertices without x, y and z");
     if (!reader_ok(reader) || !ply_check_count(&ply->file, element)) return;
-    ply->position = malloc(((size_t)element->count + 1) * sizeof *ply->position);
-    if (!ply->position) reader_fail_memory(reader);
+    ply->position = reader_malloc(reader, ((size_t)element->count + 1), sizeof *ply->position);
     for (uint32_t v = 0; v < element->count && reader_ok(reader); v++) {
         double values[ROLES] = {0};
         ply_read_row(&ply->file, element, values);
@@ -64,7 +63,7 @@ static void add_face(PlyMesh *ply, uint32_t face, const uint32_t *corner, uint32
     for (uint32_t c = 2; c < count && reader_ok(reader); c++) {
         if (ply->triangles == ply->room) {
             size_t room = 2 * ply->room + 64;
-            uint32_t(*more)[3] = realloc(ply->triangle, room * sizeof *more);
+            uint32_t(*more)[3] = reader_realloc(reader, ply->triangle, room, sizeof *more);
             if (!more) {
                 reader_fail_memory(reader);
                 return;
@@ -117,6 +116,7 @@ static void read_elements(PlyMesh *ply, float unit, bool up_z)
 
 static void make_mesh(PlyMesh *ply, Mesh *mesh)
 {
+    if (!reader_charge(ply->reader, ply->vertices + ply->triangles, 24)) return;
     if (mesh_create(mesh, ply->vertices, (uint32_t)ply->triangles, NULL) != RESULT_OK) {
         reader_fail_memory(ply->reader);
         return;
@@ -130,7 +130,7 @@ Result ply_mesh_read(Mesh *mesh, const char *path, const Bytes *bytes, float uni
                      Error *error)
 {
     Reader reader = reader_begin_text(path, bytes, error);
-    PlyMesh *ply = calloc(1, sizeof *ply);
+    PlyMesh *ply = reader_calloc(&reader, 1, sizeof *ply);
     *mesh = (Mesh){0};
     if (!ply) return reader_fail_memory(&reader);
     ply->reader = &reader;
@@ -145,6 +145,5 @@ Result ply_mesh_read(Mesh *mesh, const char *path, const Bytes *bytes, float uni
     free(ply->position);
     free(ply->triangle);
     free(ply);
-    reader_end(&reader);
     return reader.result;
 }

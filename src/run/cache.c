@@ -106,17 +106,12 @@ static Result scan(CacheFile *cache, uint64_t at, Error *error)
 Result cache_file_matches(const char *path, bool *matches, Error *error)
 {
     char magic[sizeof CACHE_MAGIC - 1];
-    struct stat status;
-    *matches = false;
-    // A pipe is not opened: bytes that are read from it here would be lost for the actual reader.
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return RESULT_OK;
-    FILE *stream = fopen(path, "rb");
-    *matches = stream && fread(magic, sizeof magic, 1, stream) == 1 &&
-               memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
-    int reason = !stream || ferror(stream) ? errno : 0;
-    if (stream) fclose(stream);
-    // Folders and missing files are refused by whoever opens the path later, with a better message.
-    if (!reason || reason == EISDIR || reason == ENOENT) return RESULT_OK;
+    errno = 0;
+    size_t size = bytes_peek(path, magic, sizeof magic);
+    int reason = size ? 0 : errno;
+    *matches = size == sizeof magic && memcmp(magic, CACHE_MAGIC, sizeof magic) == 0;
+    // Pipes, folders and missing files are left to whoever opens the path later.
+    if (!reason || reason == EISDIR || reason == ENOENT || reason == EINVAL) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: %s", path, strerror(reason));
 }
 
@@ -135,9 +130,8 @@ bool cache_file_is_stub(const char *path)
 {
     char magic[sizeof CACHE_MAGIC - 1];
     struct stat status;
-    ChunkFile file = {.descriptor = open(path, O_RDONLY | O_CLOEXEC)};
-    bool stub =
-        file.descriptor >= 0 && fstat(file.descriptor, &status) == 0 && S_ISREG(status.st_mode);
+    ChunkFile file = {.descriptor = bytes_open_plain(path, &status)};
+    bool stub = file.descriptor >= 0 && S_ISREG(status.st_mode);
     file.size = stub ? (uint64_t)status.st_size : 0;
     size_t begun = file.size < sizeof magic ? (size_t)file.size : sizeof magic;
     uint64_t at = CHUNK_FILE_HEADER_BYTES;

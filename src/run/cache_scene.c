@@ -25,7 +25,7 @@ const char *cache_scene_own_maker(void)
 
 char *cache_scene_maker(const Bytes *text)
 {
-    json_t *scene = json_read(text->data, text->size, 0, NULL);
+    json_t *scene = json_read((const char *)text->data, text->size, 0, NULL);
     const char *maker = json_string_value(json_object_get(scene, MAKER));
     char *copy = strdup(maker ? maker : "unknown");
     json_decref(scene);
@@ -174,7 +174,7 @@ static Result compare(const Bytes *text, json_t *is, void (*forget)(json_t *scen
                       const char *path, Error *error)
 {
     Difference difference;
-    json_t *was = json_read(text->data, text->size, 0, NULL);
+    json_t *was = json_read((const char *)text->data, text->size, 0, NULL);
     Result result = RESULT_OK;
     if (!is || (!was && json_memory_short())) {
         result = error_set(error, RESULT_FAILED, "%s: no memory to compare its scene", path);
@@ -202,7 +202,7 @@ Result cache_scene_compare(const Bytes *text, const Simulation *simulation, cons
     Bytes now = {0};
     TRY(cache_scene_describe(&now, simulation, error));
     // Parse the text again, so that both sides have the same JSON types for numbers.
-    json_t *is = json_read(now.data, now.size, 0, NULL);
+    json_t *is = json_read((const char *)now.data, now.size, 0, NULL);
     bytes_destroy(&now);
     return compare(text, is, NULL, path, error);
 }

@@ -30,7 +30,8 @@ static Result encode(const FrameFile *file, const Image *image, const ImageTexts
     if (file->target->format == TARGET_PFM) return pfm_encode(image, bytes, error);
     if (file->target->format == TARGET_PNG) return png_encode(image, texts, bytes, error);
     if (file->target->format == TARGET_JPEG) return jpeg_encode(image, JPEG_FINE, bytes, error);
-    ExrFile exr = {.image = image, .floats = file->exr_float, .texts = texts};
+    // Programs that compose images take a missing alpha for 0.
+    ExrFile exr = {.image = image, .alpha = true, .floats = file->exr_float, .texts = texts};
     if (extra) {
         exr.layers = extra->layers[0].pixels ? extra->layers : NULL;
         exr.world_to_camera = (const float(*)[4])extra->world_to_camera;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tractrix-render: simulates the hair of files or scenes and draws it.
 #include "base/clock.h"
-#include "base/interrupt_install.h"
 #include "base/program.h"
 #include "run/render_help.h"
 #include "run/run.h"
@@ -45,7 +44,7 @@ static bool wants_solver_list(int argc, char **argv)
 int main(int argc, char **argv)
 {
     Error error = {{0}};
-    interrupt_install();
+    program_begin(argc, argv);
     if (wants_solver_list(argc, argv)) {
         solver_print_list(stdout);
         return program_end("tractrix-render", RESULT_OK, &error);

@@ -26,7 +26,7 @@ static void write_line(char text[LINE_BYTES], int frame, const RecordLine *line)
 static Result find_checksum(uint32_t *checksum, const char *name, Error *error)
 {
     Bytes file;
-    TRY(bytes_read_file(&file, name, error));
+    TRY(bytes_read_plain(&file, name, error));
     *checksum = libdeflate_crc32(0, file.data, file.size);
     bytes_destroy(&file);
     return RESULT_OK;
@@ -73,7 +73,7 @@ Result record_read(Record *record, const Target *target, int last, Error *error)
         free(path);
         return error_set(error, RESULT_FAILED, "no memory for the record of %d frames", last + 1);
     }
-    bool there = bytes_read_file(&file, path, NULL) == RESULT_OK;
+    bool there = bytes_read_plain(&file, path, NULL) == RESULT_OK;
     for (char *line = there ? strtok_r((char *)file.data, "\n", &rest) : NULL; line;
          line = strtok_r(NULL, "\n", &rest))
         take_line(record, line);

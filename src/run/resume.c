@@ -120,7 +120,7 @@ static Result compare_image(const Search *search, int frame, const char *name, E
     Bytes file = {0};
     Image image = {0};
     ImageTexts texts = {0};
-    Result result = bytes_read_file(&file, name, why);
+    Result result = bytes_read_plain(&file, name, why);
     THEN(result, decode(&image, &texts, &file, search->images.format, name, why));
     THEN(result, compare_form(search, &image, name, why));
     THEN(result, compare_texts(search, &texts, frame, name, why));

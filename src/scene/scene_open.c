@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
 
-#include <stdio.h>
+#include "base/bytes.h"
+
 #include <string.h>
-#include <sys/stat.h>
 
 bool scene_is_file(const char *path)
 {
     size_t length = strlen(path);
     if (length >= 5 && strcmp(path + length - 5, ".json") == 0) return true;
-    struct stat status;
-    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) return false;
-    FILE *file = fopen(path, "rb");
-    if (!file) return false;
     char beginning[257];
-    size_t size = fread(beginning, 1, sizeof beginning - 1, file);
-    fclose(file);
+    size_t size = bytes_peek(path, beginning, sizeof beginning - 1);
     beginning[size] = 0;
     bool binary = memchr(beginning, 0, size) != NULL;
     const char *text = beginning + (strncmp(beginning, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);

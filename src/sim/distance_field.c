@@ -37,6 +37,7 @@ typedef struct Work {
     const Gpu *gpu;
     const Mesh *mesh;
     DistanceField *field;
+    bool *repeated; // find_repeated
     FieldParams params;
     GpuBuffer triangles, items, squares, nearest, closest[2], winding;
     int present; // index of the current buffer in `closest`
@@ -47,6 +48,7 @@ static void work_destroy(Work *work)
     GpuBuffer *buffers[] = {&work->triangles,  &work->items,      &work->squares, &work->nearest,
                             &work->closest[0], &work->closest[1], &work->winding};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; ++i) gpu_buffer_destroy(buffers[i]);
+    free(work->repeated);
 }
 
 void distance_field_destroy(DistanceField *field)
@@ -66,6 +68,41 @@ static void choose_grid(DistanceField *field, const Mesh *mesh, uint32_t resolut
         float side = (float)(field->size[k] - 1) * field->spacing;
         field->low[k] = 0.5f * (low[k] + high[k]) - 0.5f * side;
     }
+}
+
+// --- Triangles that occur again change nothing, and a file may repeat one a hundred thousand
+// times.
+
+// The corners from the smallest one on, in the order of the triangle.
+static void turn(const uint32_t from[3], uint32_t to[3])
+{
+    int first = from[1] < from[0] ? (from[2] < from[1] ? 2 : 1) : from[2] < from[0] ? 2 : 0;
+    for (int i = 0; i < 3; ++i) to[i] = from[(first + i) % 3];
+}
+
+// [triangle_count] whether the same triangle comes earlier; to be freed. NULL when memory is short.
+static bool *find_repeated(const Mesh *mesh)
+{
+    size_t room = 16;
+    while (room < 2 * (size_t)mesh->triangle_count) room *= 2;
+    uint32_t *table = calloc(room, sizeof *table); // numbers of triangles from 1, by their hash
+    bool *repeated = calloc((size_t)mesh->triangle_count + 1, sizeof *repeated);
+    for (uint32_t t = 0; table && repeated && t < mesh->triangle_count; ++t) {
+        uint32_t own[3], other[3];
+        turn(mesh->triangle[t], own);
+        uint64_t hash = ((own[0] * 0x9e3779b97f4a7c15u ^ own[1]) * 0xbf58476d1ce4e5b9u ^ own[2]) *
+                        0x94d049bb133111ebu;
+        size_t at = (hash >> 20) & (room - 1);
+        for (; table[at] && !repeated[t]; at = (at + 1) & (room - 1)) {
+            turn(mesh->triangle[table[at] - 1], other);
+            repeated[t] = memcmp(own, other, sizeof own) == 0;
+        }
+        if (!repeated[t]) table[at] = t + 1;
+    }
+    free(table);
+    if (table) return repeated;
+    free(repeated);
+    return NULL;
 }
 
 // --- Work items.
@@ -157,6 +194,47 @@ static void add_columns(Items *items, const DistanceField *field, const Extent *
     for (uint32_t j = first[1]; j < end[1]; j += FIELD_COLUMNS)
         for (uint32_t i = first[0]; i < end[0]; i += FIELD_COLUMNS)
             add_item(items, (const uint32_t[]){triangle, axis, i, j});
+}
+
+// --- Cost.
+
+// The work items of usual meshes: a dozen for each small triangle, of which there are two for each
+// vertex, and for large triangles this many for each block of a side of the grid, as many as fifty
+// closed layers make.
+enum { ITEMS_EACH = 12, ITEMS_EACH_BLOCK = 400, LEAST_AFFORDABLE = 2 };
+
+// Whether find_near has at most `most` work items.
+static bool has_at_most(const DistanceField *field, const Mesh *mesh, const bool *repeated,
+                        size_t most)
+{
+    Items items = {0};
+    size_t count = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count && count <= most && !items.failed; ++t) {
+        if (repeated && repeated[t]) continue;
+        Extent extent = extent_of(field, mesh, t);
+        items.count = 0;
+        add_blocks(&items, field, &extent, t, 0);
+        count += items.count;
+    }
+    free(items.list);
+    return count <= most;
+}
+
+uint32_t distance_field_affordable(const Mesh *mesh, uint32_t resolution)
+{
+    size_t few = mesh->triangle_count < 2 * (size_t)mesh->vertex_count
+                     ? mesh->triangle_count
+                     : 2 * (size_t)mesh->vertex_count;
+    bool *repeated = find_repeated(mesh); // NULL: all count
+    for (; resolution > LEAST_AFFORDABLE; resolution -= (resolution + 7) / 8) {
+        DistanceField field = {0};
+        size_t side = resolution / FIELD_BLOCK + 1;
+        choose_grid(&field, mesh, resolution);
+        if (has_at_most(&field, mesh, repeated, ITEMS_EACH * few + ITEMS_EACH_BLOCK * side * side))
+            break;
+    }
+    free(repeated);
+    return resolution < LEAST_AFFORDABLE ? LEAST_AFFORDABLE : resolution;
 }
 
 // --- Passes.
@@ -264,6 +342,7 @@ static Result dispatch_triangles(Work *work, AddItems *add, uint32_t axis, Error
     for (uint32_t t = 0; t < work->mesh->triangle_count;) {
         Items items = {0};
         for (; t < work->mesh->triangle_count && items.count < part && !items.failed; ++t) {
+            if (work->repeated[t]) continue;
             Extent extent = extent_of(work->field, work->mesh, t);
             add(&items, work->field, &extent, t, axis);
         }
@@ -376,7 +455,10 @@ Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *m
     work.params.size_x = field->size[0];
     work.params.size_y = field->size[1];
     work.params.size_z = field->size[2];
-    Result result = compute(&work, error);
+    work.repeated = find_repeated(mesh);
+    Result result = work.repeated
+                        ? compute(&work, error)
+                        : error_set(error, RESULT_FAILED, "no memory for a distance field");
     work_destroy(&work);
     if (result != RESULT_OK) distance_field_destroy(field);
     return result;
@@ -385,7 +467,7 @@ Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *m
 static const char MAGIC[] = "TRXFIELD";
 
 // Increase this whenever the field of an unchanged mesh changes, so that cached files are not used.
-enum { METHOD = 1 };
+enum { METHOD = 2 };
 
 // The grid as stored in the file.
 typedef struct GridRecord {

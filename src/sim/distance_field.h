@@ -26,6 +26,11 @@ Result distance_field_create(DistanceField *field, const Gpu *gpu, const Mesh *m
                              uint32_t resolution, Error *error);
 void distance_field_destroy(DistanceField *field);
 
+// The largest resolution, from `resolution` down to 2, at which the field takes no longer
+// than those of usual meshes: a file of a few KB may have thousands of triangles that all cross the
+// whole grid. Usual meshes keep `resolution`.
+uint32_t distance_field_affordable(const Mesh *mesh, uint32_t resolution);
+
 // As distance_field_create, but with a cache on disk: reads tractrix/HASH.field in $XDG_CACHE_HOME
 // or ~/.cache if that file is complete (chunk.h); otherwise computes the field and tries to write
 // the file. HASH is a hash of mesh and resolution. Files are safe to delete; a damaged or

@@ -53,7 +53,7 @@ void moving_body_update_field(MovingBody *body, double before, double after)
 }
 
 static Result create_moving_field(MovingBody *body, const Gpu *gpu, const Scene *scene,
-                                  const Strands *strands, Error *error)
+                                  const Strands *strands, uint32_t resolution, Error *error)
 {
     float longest = 0, margin = 0;
     for (uint32_t i = body->of->first; i < end_of(body->of); ++i) {
@@ -63,8 +63,8 @@ static Result create_moving_field(MovingBody *body, const Gpu *gpu, const Scene 
         for (uint32_t s = 0; s < strands[i].strand_count; ++s)
             longest = fmaxf(longest, (float)strands_length(&strands[i], s));
     }
-    TRY(moving_field_create(&body->moving, gpu, body->of->shape, longest, margin,
-                            (uint32_t)scene->run.sdf_resolution, error));
+    TRY(moving_field_create(&body->moving, gpu, body->of->shape, longest, margin, resolution,
+                            error));
     moving_body_update_field(body, 0, 0);
     return RESULT_OK;
 }
@@ -81,7 +81,8 @@ static Result create_field(MovingBody *body, const Gpu *gpu, const Scene *scene,
     body->mesh_checksum =
         libdeflate_crc32(sum, mesh->triangle, mesh->triangle_count * sizeof *mesh->triangle);
     if (!needs_field(scene, body->of, strands)) return RESULT_OK;
-    if (body->mesh.body) return create_moving_field(body, gpu, scene, strands, error);
+    resolution = distance_field_affordable(mesh, resolution);
+    if (body->mesh.body) return create_moving_field(body, gpu, scene, strands, resolution, error);
     return run->sdf_cache ? distance_field_create_cached(field, gpu, mesh, resolution, NULL, error)
                           : distance_field_create(field, gpu, mesh, resolution, error);
 }

@@ -275,7 +275,6 @@ static Result read_source(FormatSource *source, const char *name, const Bytes *b
     source->wishes.points_per_strand = options->points_per_strand;
     source->wishes.array = options->array && *options->array ? options->array : NULL;
     Result result = format ? format->read(source, &reader) : refuse_unknown(&reader, xgen);
-    reader_end(&reader);
     if (result != RESULT_OK || !format) return result;
     TRY(check_wishes(source, name, format->name, error));
     report_source(report, source, kind);
@@ -361,13 +360,11 @@ static void explain(const Bytes *bytes, const char *path, Error *error)
 
 Result strands_read_as_mesh(Result result, const char *path, Error *error)
 {
-    struct stat status;
     Bytes bytes;
     Error unread;
     // Standard input and pipes cannot be read twice.
-    if (result != RESULT_BAD_INPUT || stat(path, &status) != 0 || !S_ISREG(status.st_mode))
+    if (result != RESULT_BAD_INPUT || bytes_read_plain(&bytes, path, &unread) != RESULT_OK)
         return result;
-    if (bytes_read_file(&bytes, path, &unread) != RESULT_OK) return result;
     if (!foreign_find(bytes.data, bytes.size)) explain(&bytes, path, error);
     bytes_destroy(&bytes);
     return result;

@@ -75,7 +75,11 @@ static void a_pipe_of_unknown_size_is_read_to_its_end(void **state)
     snprintf(path, sizeof path, "/dev/fd/%d", ends[0]);
     Bytes bytes;
     Error error;
+    assert_int_equal(bytes_read_file(&bytes, path, &error), RESULT_BAD_INPUT);
+    assert_non_null(strstr(error.text, "is a device or pipe: expected a plain file"));
+    bytes_set_command_line(2, (char *const[]){"test", path});
     assert_int_equal(bytes_read_file(&bytes, path, &error), RESULT_OK);
+    bytes_set_command_line(0, NULL);
     assert_int_equal(bytes.size, SIZE);
     assert_memory_equal(bytes.data, sent, SIZE);
     assert_int_equal(bytes.data[SIZE], 0);

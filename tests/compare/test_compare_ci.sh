@@ -125,16 +125,17 @@ claim "--github prints escaped annotations and appends a summary"
 GITHUB_WORKSPACE=$work GITHUB_STEP_SUMMARY=$work/summary.md
 export GITHUB_WORKSPACE GITHUB_STEP_SUMMARY
 run 0 "$work/a" "$work/a" --github; counts "$work/out" "::" 0; in_file "$work/summary.md" "### Images: 0 of 2 failed"
-odd=$(printf 'o,d:d 100%%\r\nx|`.pfm')
+odd=$(printf 'o,d:d 100%%\r\nx|`\033[2J\302\2330\342\200\256.pfm')
 cp "$work/a/f_2.pfm" "$work/a/$odd"; cp "$work/b/f_2.pfm" "$work/b/$odd"
 run 1 -q "$work/a" "$work/b" --github --max-failing-pixels 1%
 says '::error file=a/f_2.pfm,title=f_2.pfm%3A different::RMSE 47.72'
 # Only %, CR and LF are escaped in the message.
-says '::error file=a/o%2Cd%3Ad 100%25%0D%0Ax|`.pfm,title=o%2Cd%3Ad 100%25%0D%0Ax|`.pfm%3A different::RMSE 47.72'
+unseen='\x1b[2J\xc2\x9b0\xe2\x80\xae'
+says '::error file=a/o%2Cd%3Ad 100%25%0D%0Ax|`'"$unseen.pfm"',title=o%2Cd%3Ad 100%25%0D%0Ax|`'"$unseen.pfm"'%3A different::RMSE 47.72'
 says 'failing pixels (50 %25)'
 counts "$work/out" "::error" 2; if [ "$(wc -l <"$work/out")" = 2 ]; then good; else bad "more than two lines"; fi
 in_file "$work/summary.md" "### Images: 2 of 3 failed"; in_file "$work/summary.md" "Limits: pixel tolerance 0, failing pixels 1 %."
-in_file "$work/summary.md" '| `f_2.pfm` | different |'; in_file "$work/summary.md" ' | 600 (50 %) | '; in_file "$work/summary.md" '| `o,d:d 100%??x\|'\''.pfm` | different |'
+in_file "$work/summary.md" '| `f_2.pfm` | different |'; in_file "$work/summary.md" ' | 600 (50 %) | '; in_file "$work/summary.md" "| \`o,d:d 100%\\x0d\\x0ax\\|'$unseen.pfm\` | different |"
 rm "$work/a/$odd" "$work/b/$odd"
 cp "$work/b/f_2.pfm" "$work/b/unknown.pfm" # its reference is not there, but has a place in the checkout
 run 1 -q "$work/a" "$work/b" --github; says '::error file=a/unknown.pfm,title=unknown.pfm%3A new::'

@@ -104,6 +104,21 @@ run 0 "$work/new.png" $b --update; equal "$work/new.png" $b
 : >"$work/plain"
 run 1 "$work/plain/new.png" $b --update; one_line; says "plain/new.png"
 
+claim "--update stays in the folder of the references"
+mkdir -p "$work/kept/sub" "$work/beyond" "$work/rendered/sub"
+cp $a "$work/beyond/f_1.png"; cp $a "$work/beyond/f_2.png"
+for f in f_1 f_2 f_3; do cp $b "$work/rendered/$f.png"; done
+ln -s ../beyond/f_1.png "$work/kept/f_1.png"; ln -s ../beyond/none.png "$work/kept/f_3.png"
+run 1 "$work/kept" "$work/rendered" --update; says "f_1.png: is a symbolic link, which is not followed"; says "f_3.png: is a symbolic link"
+equal "$work/beyond/f_1.png" $a; none "$work/beyond/none.png"; equal "$work/kept/f_2.png" $b
+run 1 "$work/kept/f_%d.png" "$work/rendered/f_%d.png" --update; says "is a symbolic link, which is not followed"
+equal "$work/beyond/f_1.png" $a
+# The user may name a link: a single image, or the folder itself.
+ln -s kept "$work/named"; rm "$work/kept"/f_*
+run 0 "$work/named/" "$work/rendered" --update; equal "$work/kept/f_1.png" $b
+ln -s beyond/f_2.png "$work/named.png"
+run 0 "$work/named.png" $b --update; equal "$work/beyond/f_2.png" $b
+
 claim "--shrink writes a small JPEG and nothing else"
 run 0 --shrink 40 $a "$work/small.jpg"; silent out; silent err
 if od -An -v -tx1 "$work/small.jpg" | tr -d ' \n' | grep -q '^ffd8.*ffc00011080\{2\}1e0028'; then good; else bad "not a JPEG of 40 x 30 pixels"; fi

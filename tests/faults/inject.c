@@ -10,7 +10,6 @@
 //   TRACTRIX_FAULT_DEPTH  how many callers make a site (default 4)
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
-#include <jansson.h>
 #include <libdeflate.h>
 #include <png.h>
 
@@ -281,18 +280,6 @@ int __wrap_asprintf(char **text, const char *format, ...)
     int length = vasprintf(text, format, arguments);
     va_end(arguments);
     return length;
-}
-
-extern void *__wrap_malloc(size_t size);
-extern void __real_json_get_alloc_funcs(json_malloc_t *allocates, json_free_t *releases);
-
-// jansson's own calls of malloc are not wrapped. If jansson uses malloc, this reports the wrapper
-// instead, so that json.c, which compares with its own malloc, replaces it by the project's
-// allocator, whose calls are wrapped.
-void __wrap_json_get_alloc_funcs(json_malloc_t *allocates, json_free_t *releases)
-{
-    __real_json_get_alloc_funcs(allocates, releases);
-    if (*allocates == __real_malloc) *allocates = __wrap_malloc;
 }
 
 static int take_mode(int flags, va_list arguments)

@@ -11,7 +11,7 @@ seq -s, 1000 | sed 's/.*/[&]/' >"$work/numbers.json"
 TRACTRIX_FAULT_LOG=$work/log "$bin/faults/tractrix-render" "$work/numbers.json" -o "$work/x.png" 2>"$work/errors" || true
 calls=$(grep -c '^malloc ' "$work/log")
 if [ "$calls" -lt 1000 ]; then
-    echo "1000 numbers of JSON made $calls calls of malloc: expected 1000 or more (json.c: watch_memory)"
+    echo "1000 numbers of JSON made $calls calls of malloc: expected 1000 or more (json_watch.c)"
     exit 1
 fi
 rm -rf "$work"

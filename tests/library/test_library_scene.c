@@ -398,6 +398,45 @@ static void writes_and_reads_images(void **state)
     assert_int_equal(rmdir(path), 0); // no other files are left in it
 }
 
+static void takes_null_and_impossible_sizes(void **state)
+{
+    TractrixScene *scene;
+    uint8_t pixels[16 * 4] = {0};
+    char text[8];
+    (void)state;
+    assert_int_equal(tractrix_scene_get(NULL, -1, "wind", text, sizeof text), 0);
+    assert_int_equal(tractrix_scene_json(NULL, text, sizeof text), 0);
+    assert_int_equal(tractrix_scene_section_count(NULL), 0);
+    assert_int_equal(tractrix_scene_body_count(NULL), 0);
+    assert_string_equal(tractrix_device_text(NULL, "vendor"), "");
+    assert_string_equal(tractrix_simulation_messages(NULL), "");
+    assert_true(tractrix_simulation_time(NULL) == 0);
+    assert_null(tractrix_picture_image(NULL));
+    // Rows whose distance goes beyond the address space.
+    const size_t rows[] = {(size_t)-4, (size_t)1 << 63, (size_t)PTRDIFF_MAX / 4 + 1};
+    for (int i = 0; i < 3; ++i) {
+        const TractrixImage image = {
+            .size = sizeof image, .width = 4, .height = 4, .row_bytes = rows[i], .pixels = pixels};
+        library_refused(tractrix_image_write(&image, "x.png", &library_error), TRACTRIX_USAGE,
+                        "image.row_bytes: ");
+    }
+    // Counts are multiplied in 64 bits, and the first wrong size ends the search.
+    const float position[9] = {0};
+    const uint32_t sizes[2] = {0, 2};
+    TractrixStrands strands = {.size = sizeof strands,
+                               .metres_per_unit = 1,
+                               .strand_count = UINT32_MAX,
+                               .vertices_each = 2,
+                               .position = position};
+    WELL(tractrix_scene_create(&scene, NULL, &library_error));
+    library_refused(tractrix_scene_add_strands(scene, "x", &strands, &library_error),
+                    TRACTRIX_USAGE, "strands: got 8589934590 vertices or more, ");
+    strands.sizes = sizes;
+    library_refused(tractrix_scene_add_strands(scene, "x", &strands, &library_error),
+                    TRACTRIX_BAD_INPUT, "strands: strand 0 has 0 vertices: expected 2 to 65535");
+    tractrix_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -410,6 +449,7 @@ int main(void)
         cmocka_unit_test(refuses_wrong_meshes),
         cmocka_unit_test(compares_images),
         cmocka_unit_test(writes_and_reads_images),
+        cmocka_unit_test(takes_null_and_impossible_sizes),
     };
     return cmocka_run_group_tests_name("library_scene", tests, NULL, NULL);
 }

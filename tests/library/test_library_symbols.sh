@@ -30,10 +30,15 @@ for file in "$library" "$bin/lib/libtractrix.a"; do
     case $file in *.a) nm -u "$file" ;; *) nm -D -u "$file" ;; esac | awk '{ print $NF }' | sed 's/@.*//' | sort -u >"$work/called"
     holds test -s "$work/called"
     for name in exit _exit _Exit quick_exit abort atexit signal sigaction sigprocmask raise fork vfork posix_spawn posix_spawnp \
-        execve execvp system popen stderr printf puts putchar perror __printf_chk setlocale chdir umask; do
+        execve execvp system popen stderr printf puts putchar perror __printf_chk setlocale chdir umask json_set_alloc_funcs json_set_alloc_funcs2; do
         if grep -qx "$name" "$work/called"; then bad "$(basename "$file") calls $name"; else good; fi
     done
 done
+
+claim "each function of the library has the C locale from its first statement on (LIBRARY_CALL)"
+awk 'FNR == 1 { name = "" } /^[A-Za-z].*[ *]tractrix_[a-z_]*\(/ && !/^static/ { name = $0 } /^\{/ && name { getline; if ($0 !~ /^ *LIBRARY_CALL;$/) print FILENAME ": " name
+    else ++found; name = "" } END { if (found < 39) print "only " found + 0 " functions found" }' src/library/*.c >"$work/out"
+silent out
 
 claim "the library has its name and stays loaded"
 holds sh -c "readelf -d '$library' | grep -q 'SONAME.*\[libtractrix.so.0\]'"

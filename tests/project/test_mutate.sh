@@ -28,77 +28,6 @@ script base/test_room.sh 'grep -q "z = 3" src/base/a.c'
 script sim/test_b.sh 'grep -q "f = 3.0" glsl/sim/b.comp && { echo "glsl/sim/b.comp:1: error: syntax"; exit 1; }' 'grep -q "f = 1.0" glsl/sim/b.comp'
 script sim/test_broken.sh 'exit 1'
 
-# list LINE...: writes tests/mutants.txt and removes results of earlier lists.
-list() { rm -rf "$tree/out"; printf '%s\n' "$@" >"$tree/tests/mutants.txt"; }
-first='src/base/a.c: test_a.sh'
-second='glsl/sim/b.comp: test_b.sh'
-
-claim "faults that are caught, by failure and by a limit of time"
-list "$first" '- < 10' '+ <= 10' '' "$first" '- y = 2' '+ y = 7' '' "$second" '- f = 1.0' '+ f = 1.1'
-run 0 --limit 3
-says "caught    src/base/a.c:1: < 10  ->  <= 10: by test_a.sh: expected 10"
-says "by test_a.sh: over "
-says "C:       2 of 2 caught, 100.0 %; beside them 0 equivalent, 0 not built"
-says "shaders: 1 of 1 caught"
-no_files "$TMPDIR"
-in_file "$tree/src/base/a.c" 'if (x < 10) y = 2;'
-
-claim "results are kept; --fresh, --only and --sample choose"
-run 0; says "3 faults were tried before"
-run 0 --fresh --only 'f = 1'; says "   1/1  caught    glsl/sim/b.comp:1"
-run 0 --fresh --sample 1 --only '< 10|f = 1' --seed 2; says "1/1  caught"
-run 0 --list; says "glsl/sim/b.comp:1: f = 1.0  ->  f = 1.1: test_b.sh"; says "    caught test_b.sh"
-
-claim "a survivor must be explained, and too many are a failure all the same"
-list "$first" '- z = 3' '+ z = 4'
-run 1; says "survived, not explained: src/base/a.c:2: z = 3  ->  z = 4"; says "expected one of test_a.sh to fail"
-list "$first" '- z = 3' '+ z = 4' 'gap: nobody looks' '  at z.'
-run 1; says "    gap: nobody looks at z."; says "0 of 1 caught, 0.0 %"
-run 0 --least 0
-list "$first" '- z = 3' '+ z = 4' 'equivalent: z is not used.'
-run 0; says "    equivalent: z is not used."
-list "$first" '- < 10' '+ <= 10' 'equivalent: is what somebody thinks.'
-run 1; says "caught by test_a.sh, explained as equivalent"
-
-claim "--whole gives survivors to the other tests"
-list "$first" '- z = 3' '+ z = 4'
-run 0 --whole; says "caught    src/base/a.c:2: z = 3  ->  z = 4: by test_room.sh"
-list "$second" '- g = 2.0' '+ g = 2.1'
-run 1 --whole=all; says "3 tests without a fault"; says "test_broken.sh: failed without a fault"
-
-claim "a change of the tree tries again all, or with --survivors what has survived"
-list "$first" '- < 10' '+ <= 10' '' "$first" '- z = 3' '+ z = 4'
-run 1
-script base/test_a.sh 'grep -q "x < 10" src/base/a.c && grep -q "z = 3" src/base/a.c'
-run 0 --survivors; says "   1/1  caught    src/base/a.c:2"; says "1 of these results are of an earlier state"
-run 0; says "1/1  caught    src/base/a.c:1"
-
-claim "what does not build proves nothing, in C and in shaders, nor does a test that fails anyway"
-list "$first" '- < 10' '+ <;'
-run 1; says "not built: src/base/a.c:1"; says "a.c: error: no number"
-list "$second" '- f = 1.0' '+ f = 3.0'
-run 1; says "not built: glsl/sim/b.comp:1"
-list 'glsl/sim/b.comp: test_broken.sh' '- f = 1.0' '+ f = 3.0'
-run 1; says "test_broken.sh: failed without a fault"; says "(not passing without it: test_broken.sh)"
-
-script base/test_a.sh "$ten" "$seven"
-claim "an interrupt leaves nothing behind, and the next run goes on"
-list "$first" '- < 10' '+ <= 10' '' "$first" '- y = 2' '+ y = 7'
-"$program" --seed 5 >"$work/out" 2>"$work/err" & # it tries the first fault first
-for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-    if grep -q ' 1/2 ' "$work/out"; then break; fi
-    sleep 0.2
-done
-kill -TERM $!
-wait $!
-status=$?
-if [ "$status" = 130 ]; then good; else bad "status $status"; fi
-says "interrupted; the next run goes on"
-no_files "$TMPDIR"
-mkdir "$TMPDIR/tractrix-mutate-4194305-killed" # larger than any process number
-run 0 --limit 3; says "1 faults were tried before"
-no_files "$TMPDIR"
-
 claim "--random makes faults of every kind by itself, the same for the same seed, outside of comments and texts"
 mkdir -p "$tree/src/run" "$tree/tests/run"
 cat >"$tree/src/run/c.c" <<'END'
@@ -117,7 +46,6 @@ int f(int a, int b) {
 END
 script run/test_c.sh 'grep -q "if (a < b) return 1 + g(a, b);" src/run/c.c && grep -q "skip(me);" src/run/c.c && grep -q "return max(a, b)" src/run/c.c'
 printf 'all:\n\t@:\n' >"$tree/Makefile"
-list "$first" '- z = 3' '+ z = 4' 'gap: nobody looks.'
 run 0 --random 80 --list; cp "$work/out" "$work/all"
 for fault in "a <= b" "2 + g(a, b)" "1 - g(a, b)" "g(b, a)" "!(a < b)" "1 == 1" "return min(a, b)" "skip(me);  ->  ;" "f = 1.1;"; do says "$fault"; done
 for no in "assert" "room[9]" "X (" "a < b + 2" "2 < 2" "4 >" "max(b, a)" "int b, int a"; do
@@ -126,7 +54,9 @@ done
 run 0 --random 80 --list; equal "$work/out" "$work/all"
 run 0 --random 5 --seed 9 --list; if [ "$(grep -c '  ->  ' "$work/out")" = 5 ]; then good; else bad "not five faults"; fi
 run 0 --random 9 --only 'run/c' --least 50 --limit 2; says "caught"; says "src/run"; says "all:"
-run 0 --random 80 --only 'w = 5' --least 0 --limit 2; says "survived: src/base/a.c:4"; says "    - w = 5;"
+run 0 --random 80 --only 'w = 5' --limit 2; says "survived: src/base/a.c:4: w = 5;"; no_files "$TMPDIR"; in_file "$tree/src/base/a.c" "w = 5;"
+run 0 --random 80 --only 'w = 5' --limit 2; says "faults were tried before"
+run 1 --random 80 --only 'w = 5' --limit 2 --least 1
 if grep -q -- 'things_destroy.*->  ;' "$work/all"; then bad "skips what only frees memory"; else good; fi
 
 claim "a random fault is given only to tests that run its line"
@@ -160,7 +90,7 @@ CFLAGS += -fsanitize=address
 LDFLAGS += -fsanitize=address
 endif
 END
-run 1 --random 60 --seed 3 --only 'src/run' --limit 2
+run 0 --random 60 --seed 3 --only 'src/run' --limit 2
 says "survived  src/run/d.c:5: return a + 3;  ->  return a - 3;: 1 of 3 tests run its line"
 says "caught    src/run/d.c:9: return a - 4;  ->  return a + 4;: by test_exact"
 says "| \`src/run\` |"
@@ -199,24 +129,15 @@ int main(void)
 }
 END
 cp tests/runner "$tree/tests/"
-run 1 --random 60 --seed 3 --only 'i <= 16' --limit 2; says "survived  src/run/d.c:6"
+run 0 --random 60 --seed 3 --only 'i <= 16' --limit 2; says "survived  src/run/d.c:6"
 run 0 --random 60 --seed 3 --only 'i <= 16' --limit 2 --fresh --sanitize
 says "caught    src/run/d.c:6: for (int i = 0; i < 16; i++) room[i] = 1;  ->  for (int i = 0; i <= 16; i++) room[i] = 1;: by test_f: with the sanitizers"
 says "of them only with the sanitizers"
 rm -r "$tree/src/run" "$tree/tests/run"
 
-claim "lists that do not fit, and wrong options"
-list "$first" '- z' '+ y'; run 3 --check; one_line; says "tests/mutants.txt:1: 'z' occurs 2 times in src/base/a.c: expected once"
-list "$first" '- zz' '+ y'; run 3; says "'zz' occurs 0 times"
-list "$first" '- z = 3;' '- z += 4;' '+ z = 7;'; run 0 --check; says "1 faults, 0 of them in shaders"
-list 'src/base/a.c: test_c' '- z = 3' '+ z = 4'; run 3 --check; says "test_c: no such test"
-list 'src/base/b.c: test_a.sh' '- z = 3' '+ z = 4'; run 3 --check; says "src/base/b.c: no such file"
-list "$first" '- z = 3' '+ z = 3'; run 3 --check; says "expected a change"
-list "$first" '- z = 3' '+ z = 4' '' "$first" '- z = 3' '+ z = 4'; run 3 --check; says "the same fault as tests/mutants.txt:1"
-list "$first" '+ z = 3'; run 3 --check; says "expected a file, then the old text, then the new"
-list "$first" '- z = 3'; run 3 --check; says "expected \`- OLD\` and \`+ NEW\`"
-list 'Anything'; run 3 --check; says "tests/mutants.txt:1: 'Anything': expected"
-run 2 --only '('; says "expected a regular expression"
-run 2 --jobs 0
-list "$first" '- z = 3' '+ z = 4'; run 3 --only nothing; says "nothing: no fault in tests/mutants.txt contains this text"
+claim "wrong options"
+run 2 --random 3 --only '('; says "expected a regular expression"
+run 2 --random 3 --jobs 0
+run 2; says "--random"
+run 3 --random 9 --only nothing; says "nothing: no fault contains this text"
 finish

@@ -59,6 +59,15 @@ def test_update_writes_the_golden_and_fails_so_that_no_ci_passes_by_it(suite):
     suite.runpytest("--tractrix-update").assert_outcomes(passed=1)
 
 
+def test_update_follows_no_link_out_of_the_goldens(suite):
+    outside = suite.path / "outside.png"
+    golden(suite).parent.mkdir(parents=True)
+    golden(suite).symlink_to(outside)
+    result = suite.runpytest("--tractrix-update")
+    result.stdout.fnmatch_lines(["*not written: a symbolic link*"])
+    assert not outside.exists()
+
+
 def test_an_image_that_differs_fails_with_figures_and_a_page(suite):
     approve(suite)
     suite.write_test("picture(104)")

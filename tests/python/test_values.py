@@ -27,6 +27,17 @@ def test_values_become_a_flags_text(name, value, text):
     assert text_of(name, value) == text
 
 
+@pytest.mark.parametrize("use", [
+    lambda text: tractrix.read_image(text),
+    lambda text: tractrix.write_image(text, np.zeros((2, 2, 4), np.uint8)),
+    lambda text: tractrix.simulate(text, frames=1),
+    lambda text: tractrix.simulate("assets/fur.tfx", frames=1, color_map=pathlib.Path(text)),
+])
+def test_a_zero_character_ends_no_path(use):
+    with pytest.raises(tractrix.TractrixValueError, match="expected no zero character"):
+        use("assets/ball.obj\0.png")
+
+
 @pytest.mark.parametrize("value", [object(), {"x": 1}, ("a", "b"), (True, False), 1j])
 def test_other_values_are_refused(value):
     with pytest.raises(tractrix.TractrixValueError, match="wind: got .*: expected a text, a number") as caught:

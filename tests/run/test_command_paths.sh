@@ -85,5 +85,41 @@ done
 printf '{"sections": [{"file": "pipe"}]}\n' >"$work/scene/own.json"
 # shellcheck disable=SC2086
 run 3 "$work/scene/own.json" $small -o "$work/x.png"; refuses "is a device or pipe"
+scene '"mesh": "m_%d.obj"'
+cp assets/ball.obj "$work/scene/m_0.obj"; mkfifo "$work/scene/m_1.obj"
+# shellcheck disable=SC2086
+run 3 "$work/scene/own.json" $small -o "$work/x.png"; refuses "m_1.obj: is a device or pipe"
+# Such files of /proc are plain and empty, but a read of one may wait for ever. Only root may try.
+if [ -r /proc/kmsg ]; then
+    scene '"color_map": "/proc/kmsg"'
+    # shellcheck disable=SC2086
+    run 3 "$work/scene/own.json" $small -o "$work/x.png"; refuses "/proc/kmsg: "
+fi
+
+claim "the command line may name a pipe for hair, but not in the place of a frame"
+mkfifo "$work/hair"; cat assets/fur.tfx >"$work/hair" &
+# shellcheck disable=SC2086
+run 0 "$work/hair" $small -o "$work/x.png"
+mkdir "$work/frames"; mkfifo "$work/frames/frame_0000.png"
+# shellcheck disable=SC2086
+run 1 assets/fur.tfx $small --resume -o "$work/frames/"; refuses "is a device or a pipe"
+mkfifo "$work/x.pipe.png"
+# shellcheck disable=SC2086
+"$program" assets/fur.tfx $small --resume -o "$work/x.pipe.png" & cat "$work/x.pipe.png" >"$work/piped.png"
+wait $!; is_png "$work/piped.png"
+
+claim "the cache of distance fields is neither read nor written through pipes and links"
+# shellcheck disable=SC2317 # called by holds
+collides() { XDG_CACHE_HOME=$work/cache "$program" assets/fur.tfx --mesh assets/ball.obj --look plain --followers 0 --frames 1 --size 32x24 -q -o "$work/x.png"; }
+holds collides
+field=$(echo "$work"/cache/tractrix/*.field)
+is_file "$field"
+rm "$field"; mkfifo "$field"
+holds collides; holds test -p "$field"
+echo precious >"$work/victim"
+rm "$field"; ln -s "$work/victim" "$field"
+holds collides; in_file "$work/victim" precious
+rm "$field"; ln -s "$work/none" "$field"
+holds collides; none "$work/none"
 
 finish

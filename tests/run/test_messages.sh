@@ -63,7 +63,7 @@ line 2 '--\x1b[2J: no such option: see --help' render "--${escape}[2J"
 line 2 "--kind: got '\x1b', expected random, straight, curls or fur" gen --kind "$escape" -o g.tfx
 scene '"bad\\u001bkey\\n%s": 1' 'unknown key '"'"'bad\x1bkey\n%s'"'"': expected a key of --help schema'
 scene '"frames": "\\n\\u009b"' "frames: got \"\\n\xc2\x9b\", expected a whole number from 1 to 10000000"
-printf '{"a\033": ' >t.json; line 3 "t.json:1:3: control character 0x1b near '\"a'" render t.json
+printf '{"a\033": ' >t.json; line 3 "t.json:1:4: a control character in a string: expected an escape such as \\n" render t.json
 mkdir "$odd.d"; line 3 'no\nfile\x1b[31m.d: Is a directory' convert "$odd.d"
 printf 'v 0 0 \033[31m\n' >c.obj; line 3 "c.obj:1: expected a vertex's coordinate, got '\x1b[31m'" render fur.tfx --mesh c.obj --frames 1 -q -o x.png
 

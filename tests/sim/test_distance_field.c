@@ -398,6 +398,45 @@ static void a_field_is_kept_on_disk(void **state)
     mesh_destroy(&box);
 }
 
+// A thousand large triangles in one place, each many times, would take minutes at the usual
+// resolution.
+static void many_triangles_in_one_place_take_little_time(void **state)
+{
+    enum { CORNERS = 60, TRIANGLES = 3000 };
+    Mesh box, head, heap, once;
+    float *values, *wanted;
+    uint32_t seed = 1;
+    (void)state;
+    make_box(&box, (const float[3]){0.1f, 0.1f, 0.1f});
+    read_head(&head);
+    for (uint32_t resolution = 64; resolution <= FIELD_MOST; resolution *= 8) {
+        assert_int_equal(distance_field_affordable(&box, resolution), resolution);
+        assert_int_equal(distance_field_affordable(&head, resolution), resolution);
+    }
+    assert_int_equal(mesh_create(&heap, CORNERS, TRIANGLES, NULL), RESULT_OK);
+    for (int i = 0; i < CORNERS * 3; ++i)
+        heap.position[i / 3][i % 3] = (float)((seed = seed * 1664525 + 1013904223) >> 8) * 0x1p-24f;
+    for (int i = 0; i < TRIANGLES; ++i)
+        for (uint32_t k = 0; k < 3; ++k)
+            heap.triangle[i][k] = 20 * k + ((seed = seed * 1664525 + 1013904223) >> 8) % 20;
+    assert_in_range(distance_field_affordable(&heap, 64), 2, 20);
+    // Triangles that occur again change nothing.
+    assert_int_equal(mesh_create(&once, 8, 24, NULL), RESULT_OK);
+    memcpy(once.position, box.position, 8 * sizeof *box.position);
+    for (int i = 0; i < 24; ++i)
+        for (int k = 0; k < 3; ++k) once.triangle[i][k] = box.triangle[i / 2][(k + i) % 3];
+    DistanceField field = compute(&once, 16, &values), same = compute(&box, 16, &wanted);
+    assert_memory_equal(values, wanted, distance_field_count(&field) * sizeof *values);
+    distance_field_destroy(&field);
+    distance_field_destroy(&same);
+    free(values);
+    free(wanted);
+    mesh_destroy(&once);
+    mesh_destroy(&heap);
+    mesh_destroy(&head);
+    mesh_destroy(&box);
+}
+
 // If a driver's storage blocks are small, the work is done in parts, and the field is equal to the
 // bit. The limit here is the grid's largest buffer; the work in one piece would take several times
 // as much.
@@ -434,6 +473,7 @@ int main(void)
         cmocka_unit_test(holes_do_not_change_the_signs),
         cmocka_unit_test(a_mesh_turned_inside_out_is_the_same),
         cmocka_unit_test(the_head_is_closed),
+        cmocka_unit_test(many_triangles_in_one_place_take_little_time),
         cmocka_unit_test(any_mesh_fits_into_the_limits_of_the_driver),
         cmocka_unit_test_setup_teardown(a_field_is_kept_on_disk, temporary_create,
                                         temporary_destroy),

@@ -295,27 +295,6 @@ static void what_is_no_groom_says_what_it_is(void **state)
     bytes_destroy(&mesh);
 }
 
-// Samples of the same content lie in the file once, so each byte may stand for many positions.
-static void the_memory_of_samples_is_bounded_by_the_size_of_the_file(void **state)
-{
-    enum { FILE_BYTES = 100000, EACH_BYTES = 12, VERTICES = 1000 };
-    const uint64_t most = (1024ull * FILE_BYTES + 64000000) / EACH_BYTES / VERTICES;
-    (void)state;
-    Error error = {{0}};
-    uint8_t data[1] = {0};
-    Bytes bytes = {.data = data, .size = 0};
-    Reader reader = reader_begin_binary("x.abc", &bytes, &error);
-    reader.size = FILE_BYTES;
-    Ogawa file = {.reader = &reader};
-    assert_true(ogawa_allows(&file, most, VERTICES));
-    assert_int_equal(reader.result, RESULT_OK);
-    assert_false(ogawa_allows(&file, most + 1, VERTICES));
-    assert_int_equal(reader.result, RESULT_BAD_INPUT);
-    assert_non_null(strstr(error.text, "13867 samples of 1000 vertices need 166 MB: more than 1024 "
-                                       "times the size of the file"));
-    reader_end(&reader);
-}
-
 // The four numbers of groom_guide take 24 bytes; their count is at byte 700.
 static void attributes_of_other_counts_than_the_strands_are_refused(void **state)
 {
@@ -363,7 +342,6 @@ int main(void)
         TEST(cut_and_damaged_files_are_refused_in_one_line),
         TEST(what_is_no_groom_says_what_it_is),
         TEST(widths_that_only_some_objects_have_are_left_out_with_a_line),
-        TEST(the_memory_of_samples_is_bounded_by_the_size_of_the_file),
         TEST(attributes_of_other_counts_than_the_strands_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,7 +9,6 @@
 #include "strands/strands_read.h"
 #include "support/temporary.h"
 
-#include <locale.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -357,23 +356,6 @@ static void other_kinds_can_only_be_read(void **state)
     strands_destroy(&strands);
 }
 
-static void text_does_not_depend_on_the_locale(void **state)
-{
-    static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "ru_RU.UTF-8"};
-    const char *found = NULL;
-    for (int i = 0; i < 3 && !found; i++) found = setlocale(LC_NUMERIC, names[i]);
-    if (!found) {
-        print_message("no locale with a decimal comma is installed: skipped\n");
-        skip();
-    }
-    Strands strands = make_awkward();
-    Strands back = read_back(state, FORMAT_TFX2, &strands, &METRES);
-    setlocale(LC_NUMERIC, "C");
-    assert_memory_equal(back.position, strands.position, 12 * (size_t)strands.vertex_count);
-    strands_destroy(&back);
-    strands_destroy(&strands);
-}
-
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, temporary_create, temporary_destroy)
@@ -391,7 +373,6 @@ int main(void)
         TEST(broken_obj_files_are_refused_with_their_line),
         TEST(what_a_kind_cannot_hold_is_known),
         TEST(other_kinds_can_only_be_read),
-        TEST(text_does_not_depend_on_the_locale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,7 +47,7 @@ typedef struct Abc {
 static UsdValues to_values(Reader *reader, double *number, size_t count)
 {
     UsdValues values = {0};
-    if (number) values.value = malloc(count * sizeof *values.value + 1);
+    if (number) values.value = reader_malloc(reader, count, sizeof *values.value);
     if (number && !values.value) reader_fail_memory(reader);
     for (size_t i = 0; values.value && i < count; ++i) values.value[i] = (float)number[i];
     if (values.value) values.count = values.room = count, values.line = 1;
@@ -142,8 +142,7 @@ static void read_points(Abc *abc, AbcCurves *set, const OgawaProperty *position)
     alembic_longest(&abc->alembic, set->object, &set->sampling, &set->samples);
     curves->points.timed = samples > 1;
     curves->points.in_file = samples;
-    curves->points.sample = calloc((size_t)read + 1, sizeof *curves->points.sample);
-    if (!curves->points.sample) reader_fail_memory(reader);
+    curves->points.sample = reader_calloc(reader, (size_t)read + 1, sizeof *curves->points.sample);
     for (uint32_t i = 0; i < read && reader_ok(reader); ++i) {
         size_t count;
         double *number = ogawa_numbers(&abc->alembic.file, position, i, &count);
@@ -178,8 +177,7 @@ static void read_curves(Abc *abc, AbcCurves *set)
 static void read_all(Abc *abc)
 {
     Reader *reader = abc->alembic.file.reader;
-    abc->set = calloc((size_t)abc->alembic.file.count + 1, sizeof *abc->set);
-    if (!abc->set) reader_fail_memory(reader);
+    abc->set = reader_calloc(reader, (size_t)abc->alembic.file.count + 1, sizeof *abc->set);
     for (int i = 0; i < abc->alembic.file.count && reader_ok(reader); ++i) {
         const char *schema = abc->alembic.file.object[i].schema;
         abc->meshes += strncmp(schema, "AbcGeom_PolyMesh", 16) == 0;
@@ -221,13 +219,13 @@ static void describe_times(const Abc *abc, Times times, FormatSource *source)
 {
     double rate = ogawa_rate(&abc->alembic.file, times.sampling, times.count);
     double first = times.count > 1 ? time_of(abc, times, 0) * rate : 0;
-    bool even = true;
-    for (uint32_t i = 0; i < times.count && times.count > 1; ++i)
+    bool even = reader_work(abc->alembic.file.reader, times.count, 20);
+    for (uint32_t i = 0; even && i < times.count && times.count > 1; ++i)
         even = even && time_of(abc, times, i) == ogawa_time(&abc->alembic.file, times.sampling, i);
     source->samples = times.count > 1 ? times.count : 0;
     source->fps = rate;
     source->first_frame = first > 0 && first < 1e7 ? (int)(first + 0.5) : 0;
-    if (!even && abc->all_frames)
+    if (!even && abc->all_frames && reader_ok(abc->alembic.file.reader))
         format_source_note(source,
                            "samples at unequal intervals: frames are interpolated between them");
 }
@@ -246,7 +244,7 @@ static Result join(Abc *abc, const Strands *sets, Strands *all, uint32_t **which
 {
     Reader *reader = abc->alembic.file.reader;
     if (strands_join(all, sets, abc->count, NULL) != RESULT_OK) return reader_fail_memory(reader);
-    *which = malloc(((size_t)all->strand_count + 1) * sizeof **which);
+    *which = reader_malloc(reader, ((size_t)all->strand_count + 1), sizeof **which);
     if (!*which) return reader_fail_memory(reader);
     *kept = 0;
     for (uint32_t i = 0, s = 0; i < abc->count; ++i)
@@ -264,9 +262,12 @@ static void place_all(const Abc *abc, const Strands *sets, const Strands *kept,
                       const uint32_t *which, const uint32_t *first, double time, float (*room)[3],
                       float (*to)[3])
 {
+    Reader *reader = abc->alembic.file.reader;
     float(*at)[3] = room;
     for (uint32_t i = 0; i < abc->count; ++i) {
         double matrix[4][4];
+        if (!reader_work(reader, (uint64_t)sets[i].vertex_count + sets[i].strand_count, 200))
+            return;
         alembic_matrix(&abc->alembic, abc->set[i].object, time, matrix);
         basis_curves_place(&abc->set[i].curves, &sets[i], time, matrix, at);
         at += sets[i].vertex_count;
@@ -283,10 +284,8 @@ static Result make_frames(const Abc *abc, FormatSource *source, const Strands *s
     place_all(abc, sets, kept, which, first, time_of(abc, times, 0), room, kept->position);
     if (!abc->all_frames || times.count < 2) return RESULT_OK;
     size_t each = kept->vertex_count;
-    if (!ogawa_allows(&abc->alembic.file, times.count, each)) return reader->result;
-    source->frames = malloc(each * times.count * sizeof *source->frames + 1);
-    if (!source->frames) return reader_fail_memory(reader);
-    for (uint32_t f = 0; f < times.count; ++f)
+    source->frames = reader_malloc_frames(reader, times.count, each);
+    for (uint32_t f = 0; f < times.count && reader_ok(reader); ++f)
         place_all(abc, sets, kept, which, first, time_of(abc, times, f), room,
                   source->frames + f * each);
     return RESULT_OK;
@@ -300,8 +299,8 @@ static Result make_source(Abc *abc, FormatSource *source, const Strands *sets, T
     float(*room)[3] = NULL;
     Result result = join(abc, sets, &all, &which, &kept);
     if (result == RESULT_OK) {
-        first = malloc(((size_t)all.strand_count + 1) * sizeof *first);
-        room = malloc(((size_t)all.vertex_count + 1) * sizeof *room);
+        first = reader_malloc(reader, ((size_t)all.strand_count + 1), sizeof *first);
+        room = reader_malloc(reader, ((size_t)all.vertex_count + 1), sizeof *room);
         if (!first || !room) result = reader_fail_memory(reader);
     }
     if (result == RESULT_OK)
@@ -407,7 +406,7 @@ static Result read(FormatSource *source, Reader *reader)
                             : abc.meshes ? "meshes without hair: " FOREIGN_WANTS_HAIR
                                          : "no curves: expected hair");
     }
-    if (reader_ok(reader)) sets = calloc((size_t)abc.count + 1, sizeof *sets);
+    if (reader_ok(reader)) sets = reader_calloc(reader, (size_t)abc.count + 1, sizeof *sets);
     if (reader_ok(reader) && !sets) reader_fail_memory(reader);
     if (reader_ok(reader)) make_strands(&abc, source, sets);
     if (reader_ok(reader)) {

@@ -189,8 +189,7 @@ static float *spread(Reader *reader, const BasisCurves *curves, int array, const
         fail_count(reader, curves, array);
         return NULL;
     }
-    float *to = malloc((size_t)strands->vertex_count * width * sizeof *to + 1);
-    if (!to) reader_fail_memory(reader);
+    float *to = reader_malloc(reader, (size_t)strands->vertex_count * width, sizeof *to);
     uint64_t start[RATES] = {0};
     for (uint32_t s = 0; to && s < strands->strand_count; ++s) {
         uint32_t count = (uint32_t)curves->array[CURVES_COUNTS].value[s];
@@ -218,8 +217,7 @@ static float *spread_strands(Reader *reader, const BasisCurves *curves, int arra
         fail_count(reader, curves, array);
         return NULL;
     }
-    float *to = malloc((size_t)strands->strand_count * width * sizeof *to + 1);
-    if (!to) reader_fail_memory(reader);
+    float *to = reader_malloc(reader, (size_t)strands->strand_count * width, sizeof *to);
     for (uint32_t s = 0; to && s < strands->strand_count; ++s)
         memcpy(to + (size_t)s * width,
                values->value + (rate == RATE_UNIFORM ? (size_t)s : 0) * width, width * sizeof *to);
@@ -231,7 +229,9 @@ static void set_colors(Reader *reader, const BasisCurves *curves, Strands *stran
     float *color = spread(reader, curves, CURVES_COLOR, strands);
     float *opacity = spread(reader, curves, CURVES_OPACITY, strands);
     bool any = color || opacity;
-    if (any) strands->color = malloc(((size_t)strands->vertex_count + 1) * sizeof *strands->color);
+    if (any)
+        strands->color =
+            reader_malloc(reader, ((size_t)strands->vertex_count + 1), sizeof *strands->color);
     if (any && !strands->color) reader_fail_memory(reader);
     for (uint32_t v = 0; strands->color && v < strands->vertex_count; ++v) {
         for (int k = 0; k < 3; ++k) strands->color[v][k] = color ? color[3 * v + k] : 1;
@@ -276,8 +276,7 @@ static void expand(Reader *reader, BasisCurves *curves, int array)
     uint32_t width = CURVES_WIDTHS[array];
     size_t count = values->count / width;
     if (!indices->line || !reader_ok(reader)) return;
-    float *all = malloc(indices->count * width * sizeof *all + 1);
-    if (!all) reader_fail_memory(reader);
+    float *all = reader_malloc(reader, indices->count * width, sizeof *all);
     for (size_t i = 0; all && i < indices->count; ++i) {
         float index = indices->value[i];
         if (!(index >= 0 && index < (float)count && index == floorf(index))) {
@@ -363,6 +362,8 @@ void basis_curves_make(BasisCurves *curves, Reader *reader, uint32_t per_strand,
     if (!reader_ok(reader)) return;
     uint64_t vertices = check_sizes(reader, curves, per_strand);
     for (int i = CURVES_DIAMETERS; i < CURVES_ARRAYS; ++i) expand(reader, curves, i);
+    reader_charge(reader, vertices, sizeof *strands->position);
+    reader_charge(reader, counts->count, sizeof *strands->first);
     if (!reader_ok(reader)) return;
     if (strands_create(strands, (uint32_t)counts->count, (uint32_t)vertices, NULL) != RESULT_OK) {
         reader_fail_memory(reader);

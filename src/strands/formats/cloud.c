@@ -44,8 +44,8 @@ static bool fits(const uint8_t *jump, uint32_t jumps, uint32_t count, uint32_t s
 static uint32_t guess(FormatSource *source, Reader *reader, const float (*positions)[3],
                       uint32_t count)
 {
-    float *steps = malloc(2 * (size_t)count * sizeof *steps);
-    uint8_t *jump = malloc(count);
+    float *steps = reader_malloc(reader, 2 * (size_t)count, sizeof *steps);
+    uint8_t *jump = reader_malloc(reader, count, 1);
     uint32_t size = 0;
     if (!steps || !jump) {
         reader_fail_memory(reader);

@@ -153,8 +153,11 @@ Result format_source_create(FormatSource *source, Reader *reader, uint32_t stran
     if (vertex_count >= UINT32_MAX)
         return reader_fail(reader, "%llu vertices: expected fewer than 2^32 - 1",
                            (unsigned long long)vertex_count);
+    reader_charge(reader, vertex_count, sizeof *source->strands.position);
+    reader_charge(reader, strand_count, sizeof *source->strands.first);
+    TRY(reader->result);
     Result result = strands_create(&source->strands, strand_count, (uint32_t)vertex_count, NULL);
-    source->place = calloc((size_t)strand_count + 1, sizeof *source->place);
+    source->place = reader_calloc(reader, (size_t)strand_count + 1, sizeof *source->place);
     if (result == RESULT_OK && source->place) return RESULT_OK;
     format_source_destroy(source);
     return reader_fail_memory(reader);
@@ -182,7 +185,7 @@ void format_source_note(FormatSource *source, const char *format, ...)
 
 Result format_source_copy(Reader *reader, void *array, uint64_t start, size_t count, size_t width)
 {
-    float *floats = malloc((count * width + 1) * sizeof *floats);
+    float *floats = reader_malloc(reader, (count * width + 1), sizeof *floats);
     if (!floats) return reader_fail_memory(reader);
     reader_copy_floats(reader, start, floats, count * width);
     memcpy(array, &floats, sizeof floats);

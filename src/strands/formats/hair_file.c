@@ -136,7 +136,7 @@ static void read_colors(Strands *strands, Reader *reader, const Header *header,
     bool has_color = header->arrays & HAIR_HAS_COLOR;
     bool has_transparency = header->arrays & HAIR_HAS_TRANSPARENCY;
     if (!reader_ok(reader) || !(has_color || has_transparency)) return;
-    strands->color = malloc(strands->vertex_count * sizeof *strands->color);
+    strands->color = reader_malloc(reader, strands->vertex_count, sizeof *strands->color);
     if (!strands->color) {
         reader_fail_memory(reader);
         return;

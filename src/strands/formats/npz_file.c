@@ -52,7 +52,7 @@ static Result make_source(FormatSource *source, Reader *reader, const NpyArray *
 {
     if (layout.vertices >= UINT32_MAX || layout.strands >= UINT32_MAX)
         return reader_fail(reader, "too many points: expected fewer than 2^32 - 1");
-    float(*positions)[3] = malloc((size_t)layout.vertices * sizeof *positions);
+    float(*positions)[3] = reader_malloc(reader, layout.vertices, sizeof *positions);
     if (!positions) return reader_fail_memory(reader);
     npy_array_copy(array, positions[0]);
     if (!layout.size && !sizes) {
@@ -146,9 +146,9 @@ static Result hold(Npz *npz, uint32_t file, Held *held)
     *held = (Held){0};
     TRY(zip_read(&npz->zip, &npz->zip.file[file], &content, &held->owned));
     snprintf(path, sizeof path, "%s: %s", reader->path, npz->zip.file[file].name);
-    Reader inner = reader_begin_binary(path, &content, reader->error);
-    reader->result = npy_array_read(&held->array, &inner);
-    reader_end(&inner);
+    Reader inner = reader_begin_inner(reader, path, &content);
+    npy_array_read(&held->array, &inner);
+    reader_end_inner(reader, &inner);
     held->packed = held->owned;
     held->place = npz->zip.file[file].at + (held->packed ? 0 : held->array.at);
     npz->used[file] = true;
@@ -180,10 +180,9 @@ static float *copy_named(Npz *npz, const char *name, uint64_t count, uint64_t wi
         bool good = npy_array_is_number(array) && array->axes > 0 && array->count == count * width;
         if (!good || (width > 1 && array->shape[array->axes - 1] != width))
             refuse_companion(npz, name, array, count, width);
-        else if (!(numbers = malloc((size_t)array->count * sizeof *numbers + 1)))
-            reader_fail_memory(npz->reader);
         else
-            npy_array_copy(array, numbers);
+            numbers = reader_malloc(npz->reader, array->count, sizeof *numbers);
+        if (numbers) npy_array_copy(array, numbers);
     }
     drop(npz, &held);
     return numbers;
@@ -283,8 +282,7 @@ static uint32_t *read_sizes(Npz *npz, Layout *layout)
     uint64_t sum = 0;
     if (hold(npz, (uint32_t)file, &held) == RESULT_OK) {
         layout->strands = held.array.count;
-        sizes = malloc((size_t)held.array.count * sizeof *sizes + 1);
-        if (!sizes) reader_fail_memory(npz->reader);
+        sizes = reader_malloc(npz->reader, held.array.count, sizeof *sizes);
     }
     for (uint64_t s = 0; sizes && s < layout->strands; s++) {
         double size = npy_array_is_number(&held.array) ? npy_array_number(&held.array, s) : -1;
@@ -384,11 +382,8 @@ static void read_frames(Npz *npz)
                         source->strands.vertex_count);
         source->samples = good ? (uint32_t)count : 0;
         if (good && source->wishes.all_frames) {
-            source->frames = malloc((size_t)array->count * sizeof(float));
-            if (source->frames)
-                npy_array_copy(array, source->frames[0]);
-            else
-                reader_fail_memory(npz->reader);
+            source->frames = reader_malloc(npz->reader, array->count, sizeof(float));
+            if (source->frames) npy_array_copy(array, source->frames[0]);
         }
     }
     drop(npz, &held);

@@ -36,7 +36,6 @@ static void count_statements(Obj *obj)
             obj->corners++;
         reader_skip_line(&counter);
     }
-    obj->reader->locale = counter.locale;
 }
 
 static void read_vertex(Obj *obj)
@@ -115,9 +114,10 @@ static Result make_room(Obj *obj)
     if (obj->vertices >= UINT32_MAX || obj->lines >= UINT32_MAX)
         return reader_fail(reader, "too many vertices or lines: expected fewer than 2^32 - 1");
     TRY(format_source_create(obj->source, reader, (uint32_t)obj->lines, obj->corners));
-    obj->position = malloc(obj->vertices * sizeof *obj->position + 1);
-    obj->line = malloc(obj->vertices * sizeof *obj->line + 1);
-    obj->source->vertex_line = calloc(obj->corners + 1, sizeof *obj->source->vertex_line);
+    obj->position = reader_malloc(obj->reader, obj->vertices, sizeof *obj->position);
+    obj->line = reader_malloc(obj->reader, obj->vertices, sizeof *obj->line);
+    obj->source->vertex_line =
+        reader_calloc(obj->reader, obj->corners + 1, sizeof *obj->source->vertex_line);
     bool good = obj->position && obj->line && obj->source->vertex_line;
     return good ? RESULT_OK : reader_fail_memory(reader);
 }

@@ -54,14 +54,15 @@ static void make_vertex_room(Ply *ply)
     size_t count = (size_t)ply->vertices->count + 1;
     const bool *has = ply->vertices->has;
     bool color = has[PLY_RED] && has[PLY_GREEN] && has[PLY_BLUE];
-    ply->position = malloc(count * sizeof *ply->position);
-    ply->joined = calloc(count, 1);
+    ply->position = reader_malloc(ply->reader, count, sizeof *ply->position);
+    ply->joined = reader_calloc(ply->reader, count, 1);
     if (ply->file.text)
-        ply->line = malloc(count * sizeof *ply->line);
+        ply->line = reader_malloc(ply->reader, count, sizeof *ply->line);
     else
-        ply->place = malloc(count * sizeof *ply->place);
-    if (color) ply->color = malloc(count * sizeof *ply->color);
-    if (has[PLY_THICKNESS]) ply->thickness = malloc(count * sizeof *ply->thickness);
+        ply->place = reader_malloc(ply->reader, count, sizeof *ply->place);
+    if (color) ply->color = reader_malloc(ply->reader, count, sizeof *ply->color);
+    if (has[PLY_THICKNESS])
+        ply->thickness = reader_malloc(ply->reader, count, sizeof *ply->thickness);
     if (!ply->position || !ply->joined || !(ply->line || ply->place) || (color && !ply->color) ||
         (has[PLY_THICKNESS] && !ply->thickness))
         reader_fail_memory(ply->reader);
@@ -108,8 +109,7 @@ static void read_strands(Ply *ply, const PlyElement *element)
     Reader *reader = ply->reader;
     if (!ply_check_count(&ply->file, element)) return;
     ply->strands = element;
-    ply->sizes = malloc(((size_t)element->count + 1) * sizeof *ply->sizes);
-    if (!ply->sizes) reader_fail_memory(reader);
+    ply->sizes = reader_malloc(ply->reader, ((size_t)element->count + 1), sizeof *ply->sizes);
     for (uint32_t s = 0; s < element->count && reader_ok(reader); s++) {
         double values[PLY_ROLES] = {0};
         ply_read_row(&ply->file, element, values);
@@ -252,7 +252,7 @@ static void make_strands(Ply *ply)
 
 static Result read(FormatSource *source, Reader *reader)
 {
-    Ply *ply = calloc(1, sizeof *ply);
+    Ply *ply = reader_calloc(reader, 1, sizeof *ply);
     if (!ply) return reader_fail_memory(reader);
     ply->reader = reader;
     ply->source = source;

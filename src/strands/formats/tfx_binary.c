@@ -156,7 +156,8 @@ static Result read3(FormatSource *source, Reader *reader)
 // Positions are float4: x, y, z, and in w whether the vertex may move.
 static Result copy_positions4(Strands *strands, Reader *reader, uint64_t start)
 {
-    strands->mobility = malloc(((size_t)strands->vertex_count + 1) * sizeof *strands->mobility);
+    strands->mobility =
+        reader_malloc(reader, ((size_t)strands->vertex_count + 1), sizeof *strands->mobility);
     if (!strands->mobility) return reader_fail_memory(reader);
     for (uint32_t v = 0; v < strands->vertex_count; v++) {
         float vertex[4];

@@ -52,7 +52,6 @@ static float read_finite(Reader *reader, const char *what)
     Reader before = *reader;
     float value = reader_read_number(reader, what);
     if (!reader_ok(reader) || isfinite(value)) return value;
-    before.locale = reader->locale;
     *reader = before;
     reader_fail_expected(reader, what);
     return 0.0f;
@@ -216,8 +215,9 @@ static Result read(FormatSource *source, Reader *reader)
     if (format_source_create(source, reader, head.strands, room) != RESULT_OK)
         return reader->result;
     keep_head(source, &head);
-    source->strands.strand_uv = calloc(head.strands, sizeof *source->strands.strand_uv);
-    source->vertex_line = malloc((room + 1) * sizeof *source->vertex_line);
+    source->strands.strand_uv =
+        reader_calloc(reader, head.strands, sizeof *source->strands.strand_uv);
+    source->vertex_line = reader_malloc(reader, (room + 1), sizeof *source->vertex_line);
     if (!source->strands.strand_uv || !source->vertex_line) return reader_fail_memory(reader);
     read_strands(reader, source, &head);
     source->strands.vertex_count = source->strands.first[head.strands];

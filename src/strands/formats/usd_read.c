@@ -33,11 +33,9 @@ static void *begin_curves(void *to, const char *type, int prim)
     usd->other_curves += strcmp(type, "NurbsCurves") == 0 || strcmp(type, "HermiteCurves") == 0;
     usd->meshes += strcmp(type, "Mesh") == 0;
     if (strcmp(type, "BasisCurves") != 0) return NULL;
-    BasisCurves *curves = malloc(sizeof *curves);
+    BasisCurves *curves = reader_malloc(usd->reader, 1, sizeof *curves);
     if (curves)
         *curves = (BasisCurves){.names = USD_NAMES, .line = usd->reader->line, .prim = prim};
-    else
-        reader_fail_memory(usd->reader);
     return curves;
 }
 
@@ -109,7 +107,8 @@ static void add_curves(Usd *usd, BasisCurves *curves)
     }
     if (usd_stage_instances(&usd->stage, curves->prim))
         reader_fail(reader, "curves of a PointInstancer are not read: %s", USD_FLATTEN);
-    BasisCurves *more = realloc(usd->curves, ((size_t)usd->curves_count + 1) * sizeof *more);
+    BasisCurves *more =
+        reader_realloc(reader, usd->curves, ((size_t)usd->curves_count + 1), sizeof *more);
     if (!more) {
         reader_fail_memory(reader);
         return;
@@ -132,7 +131,7 @@ static const UsdSchema CURVES = {begin_curves, read_attribute, find_number, end_
 
 // Without all_frames only the first sample of the points was read, but all samples of the
 // transforms. Returns the number of times in the file.
-static uint32_t find_times(const Usd *usd, FormatSource *source, UsdTimes *times)
+static uint32_t find_times(Usd *usd, FormatSource *source, UsdTimes *times)
 {
     for (uint32_t i = 0; i < usd->curves_count; ++i)
         usd_stage_add_times(&usd->stage, usd->curves[i].prim, &usd->curves[i].points, times);
@@ -158,6 +157,8 @@ static void place_all(const Usd *usd, const Strands *sets, double time, float (*
     for (uint32_t i = 0; i < usd->curves_count && reader_ok(usd->reader); ++i) {
         double matrix[4][4];
         usd_stage_find_matrix(&usd->stage, usd->curves[i].prim, time, matrix);
+        if (!reader_work(usd->reader, (uint64_t)sets[i].vertex_count + sets[i].strand_count, 200))
+            return;
         basis_curves_place(&usd->curves[i], &sets[i], time, matrix, to);
         to += sets[i].vertex_count;
     }
@@ -175,7 +176,7 @@ static Result make_source(const Usd *usd, FormatSource *source, const Strands *s
     }
     strands_destroy(&source->strands);
     source->strands = all;
-    source->vertex_line = malloc(all.vertex_count * sizeof *source->vertex_line + 1);
+    source->vertex_line = reader_malloc(reader, all.vertex_count, sizeof *source->vertex_line);
     if (!source->vertex_line) return reader_fail_memory(reader);
     for (uint32_t i = 0, s = 0, v = 0; i < usd->curves_count; ++i) {
         uint32_t line = usd->curves[i].points.sample[0].line;
@@ -190,14 +191,7 @@ static Result make_frames(const Usd *usd, FormatSource *source, const Strands *s
 {
     Reader *reader = usd->reader;
     size_t each = source->strands.vertex_count;
-    double most = 64.0 * ((double)reader->size + 1e6), size = 12.0 * (double)each * times->count;
-    if (size > most)
-        return reader_fail(
-            reader,
-            "%u frames of %zu vertices need %.0f MB: more than 64 times the size of the file",
-            times->count, each, size / 1e6);
-    source->frames = malloc(each * times->count * sizeof *source->frames + 1);
-    if (!source->frames) return reader_fail_memory(reader);
+    source->frames = reader_malloc_frames(reader, times->count, each);
     for (uint32_t f = 0; f < times->count && reader_ok(reader); ++f)
         place_all(usd, sets, times->time[f], source->frames + f * each);
     source->samples = times->count;
@@ -257,8 +251,7 @@ static Result read(FormatSource *source, Reader *reader)
                     : usd.meshes  ? "meshes without hair: " FOREIGN_WANTS_HAIR "%s"
                                   : "no BasisCurves with points%s",
                     source->note);
-    Strands *sets = calloc((size_t)usd.curves_count + 1, sizeof *sets);
-    if (!sets) reader_fail_memory(reader);
+    Strands *sets = reader_calloc(reader, (size_t)usd.curves_count + 1, sizeof *sets);
     if (reader_ok(reader)) make_strands(&usd, source, sets, &times);
     source->unit = usd.stage.unit;
     source->up = usd.stage.up_z ? UP_Z : UP_Y;
