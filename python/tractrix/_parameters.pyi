@@ -52,20 +52,32 @@ class Parameters(TypedDict, total=False):
     variant: str
     """variant of the solver, see --algo list; empty: the first variant [default none]"""
     style: Union[float, Numbers, str]
-    """how much hair keeps its rest shape: 0 loose, 1 rigid [0 to 1; default 0.5]"""
+    """how much springs draw hair to its rest shape: 0 loose, 1 rigid; rod, which keeps its shape by itself: 0 unless
+    given [0 to 1; default 0.5]"""
     rest: Literal["groom", "hanging"]
     """rest shape of hair with a style: groom, the shape in the file, in balance with gravity at time 0; hanging, the
     shape that the groom takes under its weight [default groom]"""
     style_stiffness: Union[float, Numbers, str]
     """stiffness towards the rest shape at style 0.5; at other styles multiplied by style/(1 - style) [0 to 1000000000
-    1/s2; default 200; of chain, hybrid, emulation, rope, dftl]"""
+    1/s2; default 200; of chain, rod, hybrid, emulation, rope, dftl]"""
     drag: Union[float, Numbers, str]
     """rate at which hair takes on the velocity of the air [0 to 1000000 1/s; default 3]"""
     gravity_share: Union[float, Numbers, str]
     """share of gravity that hair feels [0 to 1; default 1]"""
-    chain_bend: float
-    """stiffness of bend and twist towards the rest shape at style 0.5; at other styles multiplied by style/(1 - style);
-    0: off [0 to 1000000 m/s2; default 0; of chain]"""
+    youngs_modulus: Union[float, Numbers, str]
+    """Young's modulus of the fibre: dry hair 3 to 4.5, wet hair 1.5; 0: no resistance to bending [0 to 1000000 GPa;
+    default 3.5; of rod]"""
+    hair_radius: Union[float, Numbers, str]
+    """physical radius of the fibre, which decides stiffness and weight; --radius is the drawn one [0.001 to 1000000 um;
+    default 35; of rod]"""
+    hair_density: float
+    """density of the fibre [0.001 to 1000000 kg/m3; default 1300; of rod]"""
+    poisson: float
+    """Poisson's ratio of the fibre; the stiffness of twist is that of bending divided by 1 + ratio [-0.99 to 0.5;
+    default 0.45; of rod]"""
+    bend_damping: float
+    """internal damping of bending: time in which a bent fibre without mass straightens by 63 % (Kelvin-Voigt) [0 to
+    1000000 ms; default 1; of rod]"""
     ftl_damping: float
     """share of a particle's position correction that is subtracted from the velocity of the previous particle [0 to 1;
     default 0.98; of dftl]"""
