@@ -15,8 +15,18 @@
 // share of the gap b - s. Each pass of the lengths moves both ends of every second edge, then of
 // the others. The effect of a stiffness depends on passes and dt.
 //
-// TRESSFX4 0 (`steady`): the same local passes, but their share is chosen such that the stiffness
-// does not depend on passes and dt (solver_tressfx.c).
+// TRESSFX4 0 (`steady`): the same local passes, but their shares s are chosen such that the
+// stiffness does not depend on passes and dt. In a pass, the gap of a joint contains what the pass
+// has moved before it. At rest under a load `a` a vertex, a pass must move vertex j by -a dt^2, so
+// that the gap of joint j is -m a dt^2, m = n - 1 - j, whatever the shares are; and to first order
+// the joints' bends are g_1/s_1, g_2/s_2 - 2 g_1, g_j/s_j - 3 g_{j-1} + g_{j-2}. The tip's
+// deflection is the sum of bends times m:
+//     (sum_j m^2/s_j - B) a dt^2,   B = 2 (n-2)(n-3) + sum_{m=1}^{n-4} (2 m^2 + m) + 1
+// So a pass with equal shares has the stiffness F = s/(1 - s B/S), S = sum_{m=1}^{n-2} m^2. F is to
+// be 2/passes (dt/frame)^2 times that of the share that TressFX has in two passes a frame. The
+// first joint, of which only one end moves, has the share F in its own right (at most 1), and the
+// others get what leaves the same deflection; with equal shares it would be the softest in long
+// steps.
 //
 // Lengths: Newton's method, J J^T lambda = |s| (|s| - l), tridiagonal, gives the share by which
 // each segment s must shorten. Moving along s as it is would be y_j = x_j - lambda_j s_j +
@@ -36,7 +46,7 @@
 // that a short step does not flutter either, neighbours exchange a share X of their velocity
 // difference before they fly: v_j += X u, v_{j+1} -= X u, u = v_{j+1} - v_j. This keeps momentum,
 // and energy falls for any X < 1. A joint alone would oscillate by W^2 = 2 passes
-// local_share/dt^2; X = W dt damps it critically.
+// s/dt^2; X = W dt damps it critically. At 1/2 both get the same velocity.
 #include "sim/particles.glsl"
 #include "sim/tressfx_params.h"
 
@@ -59,14 +69,37 @@ vec3 unit(vec3 v, vec3 otherwise)
 
 vec4 conjugate(vec4 rotation) { return vec4(-rotation.xyz, rotation.w); }
 
+// The sum of m^2 for m = 1 .. last.
+float sum_of_squares(float last) { return last * (last + 1.0) * (2.0 * last + 1.0) / 6.0; }
+
+// The shares of a pass at the first joint (x) and the others (y), from that of TressFX in two
+// passes a frame.
+vec2 pass_shares(float share)
+{
+#if TRESSFX4
+    return vec2(share);
+#else
+    float m = max(float(n), 3.0) - 2.0, last = m - 2.0, S = sum_of_squares(m),
+          B = 2.0 * m * (m - 1.0) + 2.0 * sum_of_squares(last) + 0.5 * last * (last + 1.0) + 1.0;
+    float firm = tressfx_params.local_times * share / max(1.0 - share * B / S, 0.05);
+    firm = max(firm, 1e-12);
+    float first = min(firm, 2.0 * tressfx_params.local_most),
+          others = (S - m * m) / max(S / firm + B - m * m / first, 1e-6);
+    return vec2(first, min(others, tressfx_params.local_most));
+#endif
+}
+
+vec2 mean_shares = vec2(0.0); // of the lane, set in main
+
 // The shares of the local pass and of the global shape at vertex j.
 float local_at(int j)
 {
 #if VARIES
-    return own_along(j).x;
+    vec2 shares = pass_shares(own_along(j).x);
 #else
-    return tressfx_params.local_share;
+    vec2 shares = mean_shares;
 #endif
+    return j > 2 ? shares.y : shares.x;
 }
 
 float global_at(int j)
@@ -125,7 +158,8 @@ void predict(Carried carried)
 #if !TRESSFX4
     // The other vertices' velocities are relative to the motion that moves the whole strand.
     vec3 ahead = (1.0 - share) * carried.first_velocity;
-    float exchanged = tressfx_params.exchanged;
+    float both = 2.0 * float(tressfx_params.local_passes),
+          exchanged = tressfx_params.exchanged * min(sqrt(both * mean_shares.y), 0.5);
 #endif
     for (int j = 1; j < n; ++j) {
         int a = address(j);
@@ -143,11 +177,19 @@ void predict(Carried carried)
         vec3 given = (j + 1 < n ? exchanged * lever : 0.0) * (ahead - v);
         v += given, ahead -= given;
         vec3 move = dt * rotate(to_head, kick_at(j, v, wind));
+        vec3 force = dt * rotate(to_head, kick_at(j, vec3(0.0), wind));
 #endif
         move = mix(move, turn_between(first_old, first, move), share);
         from = mix(from - home, turn_between(first_old, first, from), share);
 #if !TRESSFX4
-        if (float(j) < last_global) move += global_at(j) * (style - (from + move));
+        if (float(j) < last_global) {
+            // The move towards the style takes the share s of the forces, too, but the passes have
+            // to balance all of them; up to a stiffness that is stable.
+            float s = global_at(j);
+            vec3 net = force - s * (from + force - style);
+            move += s * (style - (from + move)) +
+                    (min(1.0 / (1.0 - s), 1.5 / max(s, 1e-9)) - 1.0) * net;
+        }
 #endif
         positions[a] = vec4(move, 0.0);
         if (j > 1) velocities[a] = vec4(from, 0.0);
@@ -380,6 +422,7 @@ void main()
     if (strand >= int(step_params.strand_count)) return;
     n = int(step_params.vertex_count);
     open_frame(strand);
+    mean_shares = pass_shares(tressfx_params.local_share);
     Carried carried = carried_by_head();
     carry_lead(address(0));
     predict(carried);

@@ -18,8 +18,7 @@ static bool is_faithful(const SectionParams *params)
     return strcmp(params->variant, "tressfx4") == 0;
 }
 
-// The stiffness of a strand under passes with share k. Measured by the strand's sag it is about
-// k/(1 - 3k/4)/dt^2 per pass.
+// The stiffness that a share k of 0 .. 1 stands for, as --style multiplies it.
 static float firmness(float share)
 {
     return share / (1 - 0.75f * share);
@@ -30,27 +29,6 @@ static float share_times(float share, float times, float most)
 {
     float firm = firmness(share) * times;
     return fminf(firm / (1 + 0.75f * firm), most);
-}
-
-// The share that makes one step as stiff as TressFX's own share in two passes per frame; the step
-// lasts `frames` frames. Limited, so long steps with few passes are softer.
-static float steady_share(const SectionParams *params, float frames, float share)
-{
-    int passes = params->tressfx_local_constraints_iterations;
-    float times = 2 / (float)(passes > 0 ? passes : 1) * frames * frames;
-    return share_times(share, times, params->tressfx_local_max);
-}
-
-// The share of their velocity difference that two neighbours exchange. It critically damps the
-// oscillation of a single joint in passes that move both its ends by `share`. At 1/2 both get the
-// same velocity. Steps longer than a frame already damp more, and long strands whip if the share is
-// too large: 64 vertices without drag at 30 Hz whip with 0.15 and more, but not with 0.01 to 0.1.
-// The formula gives 1/16 there.
-static float exchanged(const SectionParams *params, float frames, float share)
-{
-    float critical = sqrtf(2 * (float)params->tressfx_local_constraints_iterations * share);
-    float longer = fmaxf(frames, 1);
-    return fminf(critical, 0.5f) / (longer * longer * longer);
 }
 
 static void fill(void *block, StepParams *uniforms, const SolverStep *step,
@@ -68,17 +46,22 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     float local = share_times(fminf(params->tressfx_local_constraint_stiffness, most), odds, most);
     float global = params->tressfx_global_constraint_stiffness;
     float spring = global / fmaxf(1 - global, 1e-6f) * odds * per_frame2;
-    float share =
-        params->tressfx_local_share * (faithful ? local : steady_share(params, per_frame, local));
+    int passes = params->tressfx_local_constraints_iterations;
+    float longer = fmaxf(per_frame, 1);
     *(TressfxParams *)block = (TressfxParams){
-        .local_share = share,
+        .local_share = params->tressfx_local_share * local,
+        .local_times = 2 / (float)(passes > 0 ? passes : 1) * per_frame2,
+        .local_most = params->tressfx_local_share * most,
         .global_share = spring / (1 + spring),
         .global_range = params->tressfx_global_constraints_range,
         .shock = params->tressfx_vsp_coeff,
         .shock_threshold = 0.01f * params->tressfx_vsp_accel_threshold * per_frame2,
         .most_move = 0.01f * params->tressfx_clamp_position_delta * per_frame,
-        .exchanged = faithful ? 0 : exchanged(params, per_frame, share),
-        .local_passes = params->tressfx_local_constraints_iterations,
+        // Steps longer than a frame already damp more, and long strands whip if the share is too
+        // large: 64 vertices without drag at 30 Hz whip with 0.15 and more, but not with 0.01 to
+        // 0.1. This gives 1/16 there.
+        .exchanged = 1 / (longer * longer * longer),
+        .local_passes = passes,
         .length_passes = params->tressfx_length_constraints_iterations,
     };
 }

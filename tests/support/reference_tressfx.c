@@ -110,7 +110,7 @@ static double lever(double here, double next)
     return fmin(1, 2 * here / next);
 }
 
-static void keep_local_shape(const Carried *carried, int n, double share, Vec *x)
+static void keep_local_shape(const Carried *carried, int n, const double shares[2], Vec *x)
 {
     for (int j = 1; j < n - 1; ++j) {
         Vec last, wanted;
@@ -118,7 +118,7 @@ static void keep_local_shape(const Carried *carried, int n, double share, Vec *x
         turn_between(carried->rest[j], last, carried->rest[j + 1], wanted);
         double back = lever(vec_norm(carried->rest[j]), vec_norm(carried->rest[j + 1]));
         for (int k = 0; k < 3; ++k) {
-            double delta = share * (x[j][k] + wanted[k] - x[j + 1][k]);
+            double delta = shares[j > 1] * (x[j][k] + wanted[k] - x[j + 1][k]);
             if (j > 1) x[j][k] -= delta * back;
             x[j + 1][k] += delta;
         }
@@ -202,6 +202,25 @@ static void exchange_velocities(TwinStrand *strand, double shock, double share)
         }
 }
 
+// The shares of a pass at the first joint and at the others. Their stiffness is `times` that of a
+// pass with the share `published`: the sag of a strand under its weight, found by summing up the
+// bends of its joints.
+static void find_shares(int n, double published, double times, const SectionParams *params,
+                        double shares[2])
+{
+    double most = (double)params->tressfx_local_share * (double)params->tressfx_local_max,
+           slope = 0, less = 1, own = (n - 2) * (n - 2); // the sag is slope/share - less
+    for (int j = 1; j <= n - 2; ++j) {
+        double arm = n - 1 - j;
+        slope += arm * arm;
+        if (j == 2) less += arm * 2 * (arm + 1);
+        if (j > 2) less += arm * (3 * (arm + 1) - (arm + 2));
+    }
+    double firm = times * published / fmax(1 - published * less / slope, 0.05);
+    shares[0] = fmin(firm, 2 * most);
+    shares[1] = fmin((slope - own) / fmax(slope / firm + less - own / shares[0], 1e-6), most);
+}
+
 void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const SectionParams *params)
 {
     Carried carried;
@@ -212,16 +231,16 @@ void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const Se
     double c = damping(step, params), decay = exp(-c * h), gain = c > 0 ? -expm1(-c * h) / c : h;
     double local = local_stiffness(params);
     int passes = params->tressfx_local_constraints_iterations;
-    double firm = local / (1 - 0.75 * local) * 2 / passes * frames * frames;
-    double share = fmin(firm / (1 + 0.75 * firm), (double)params->tressfx_local_max);
+    double shares[2];
+    find_shares(n, local * (double)params->tressfx_local_share, 2 * frames * frames / passes,
+                params, shares);
     double shape = global_spring(params) * frames * frames;
     // The threshold is an acceleration and the clamp a speed, and both are defined for frames of
     // 1/60 s.
     carry(&carried, strand, step, (double)params->tressfx_vsp_coeff,
           0.01 * (double)params->tressfx_vsp_accel_threshold * frames * frames);
-    share *= (double)params->tressfx_local_share;
     exchange_velocities(strand, carried.shock,
-                        fmin(sqrt(2 * passes * share), 0.5) / fmax(pow(frames, 3), 1));
+                        fmin(sqrt(2 * passes * shares[1]), 0.5) / fmax(pow(frames, 3), 1));
     memcpy(x[0], carried.style[0], 2 * sizeof(Vec));
     for (int j = 2; j < n; ++j) {
         Vec predicted;
@@ -232,10 +251,15 @@ void reference_tressfx_steady(TwinStrand *strand, const TwinStep *step, const Se
         shake(&carried, strand->x[j], from[j]);
         shake(&carried, predicted, x[j]);
         if (j < (double)params->tressfx_global_constraints_range * n)
-            for (int k = 0; k < 3; ++k)
-                x[j][k] = (x[j][k] + shape * carried.style[j][k]) / (1 + shape);
+            for (int k = 0; k < 3; ++k) {
+                double force = dt * gain * (step->gravity[k] + step->drag * step->wind[k]),
+                       style = carried.style[j][k],
+                       net = (force - shape * (from[j][k] - style)) / (1 + shape);
+                x[j][k] = (x[j][k] + shape * style) / (1 + shape) +
+                          (fmin(1 + shape, 1.5 * (1 + shape) / shape) - 1) * net;
+            }
     }
-    for (int i = 0; i < passes; ++i) keep_local_shape(&carried, n, share, x);
+    for (int i = 0; i < passes; ++i) keep_local_shape(&carried, n, shares, x);
     for (int i = 0; i < 2; ++i) reach_lengths(strand, x);
     memcpy(strand->x, x, (size_t)n * sizeof(Vec));
     twin_rebuild(strand, x);
@@ -291,8 +315,9 @@ void reference_tressfx_4(TwinStrand *strand, const TwinStep *step, const Section
     carry(&carried, strand, step, (double)params->tressfx_vsp_coeff,
           0.01 * (double)params->tressfx_vsp_accel_threshold);
     predict_4(strand, &carried, step, params, from, x);
+    const double share = (double)params->tressfx_local_share * local;
     for (int i = 0; i < params->tressfx_local_constraints_iterations; ++i)
-        keep_local_shape(&carried, n, (double)params->tressfx_local_share * local, x);
+        keep_local_shape(&carried, n, (double[]){share, share}, x);
     blow(step, n, x);
     for (int i = 0; i < params->tressfx_length_constraints_iterations; ++i)
         for (int odd = 0; odd < 2; ++odd)
