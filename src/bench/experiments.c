@@ -535,6 +535,7 @@ static void scale_params(SectionParams *params, double units)
         float *value = (float *)(void *)((char *)params + info->offset);
         *value *= (float)units;
     }
+    params->hair_radius *= (float)(units * units); // B/(rho A) is in m^4/s^2
 }
 
 static Result start(Run *run, const Gpu *gpu, const SectionParams *params, double rate,

@@ -101,19 +101,21 @@ Result physics_cantilever_measure(Run *run, Error *error)
 }
 
 // --- Curls that hang at rest. A planar arc stays in its plane up to a natural curvature k = kappa
-// (B/w)^(1/3); beyond it twists out. `across`: the extent across the plane; `depth`: of the tip
-// below the root.
+// (B/w)^(1/3) of 1.659 (32 segments); beyond it twists out. `across`: the extent across the plane;
+// `depth`: of the tip below the root. Exact values: the discrete rod, integrated until it rests
+// (docs/physics.md).
 
 static const struct {
     const char *name;
     double length, radius, pitch; // m; radius 0: curvature k of an arc of 5 (B/w)^(1/3)
     double k;
     int segments;
+    double across, depth; // exact, over the length; NaN: not known
 } CURLS[] = {
-    {"arc, k 1.60", 0, 0, 0, 1.60, 32},
-    {"arc, k 1.75", 0, 0, 0, 1.75, 32},
-    {"arc of 2 cm", 0.32, 0.02, 0, 0, 64},
-    {"helix", 0.32, 0.01, 0.04, 0, 32},
+    {"arc, k 1.60", 0, 0, 0, 1.60, 32, NAN, NAN},
+    {"arc, k 1.75", 0, 0, 0, 1.75, 32, NAN, NAN},
+    {"arc of 2 cm", 0.32, 0.02, 0, 0, 64, 0.1318, 0.67576},
+    {"helix", 0.32, 0.01, 0.04, 0, 32, NAN, 0.69923},
 };
 
 // Directions at the middles of segments, from straight down in the plane of x and y, or of a helix
@@ -166,8 +168,13 @@ Result physics_curl_measure(Run *run, Error *error)
         low = fmin(low, (double)run->trial.points[j][2]);
         high = fmax(high, (double)run->trial.points[j][2]);
     }
-    if (planar) experiment_add(run, "across", (high - low) / setup->length);
-    experiment_add(run, "depth", -(double)run->trial.points[setup->n - 1][1] / setup->length);
+    double across = (high - low) / setup->length,
+           depth = -(double)run->trial.points[setup->n - 1][1] / setup->length,
+           known = CURLS[setup->number].across, deep = CURLS[setup->number].depth;
+    if (planar) experiment_add(run, "across", across);
+    if (!isnan(known)) experiment_add(run, "across, off", fabs(across / known - 1));
+    experiment_add(run, isnan(deep) ? "depth" : "depth, off",
+                   isnan(deep) ? depth : fabs(depth - deep));
     return RESULT_OK;
 }
 

@@ -86,9 +86,11 @@ static Result read_batch(LibraryMap *map, const HairBatch *batch, const uint32_t
         return error_set(error, RESULT_FAILED, "no memory for the positions of %u strands",
                          batch->strand_count);
     for (uint32_t s = 0; s < batch->strand_count; ++s)
-        for (uint32_t j = 0; j < batch->vertex_count; ++j)
-            memcpy(map->position[first[s] + j], read[hair_address(batch, s, j)],
-                   sizeof *map->position);
+        for (uint32_t j = 0; j < batch->vertex_count; ++j) {
+            float *to = map->position[first[s] + j];
+            memcpy(to, read[hair_address(batch, s, j)], 3 * sizeof *to);
+            to[3] = 1; // the GPU's holds what xyz have lost (glsl/sim/relative.glsl)
+        }
     free(read);
     return RESULT_OK;
 }

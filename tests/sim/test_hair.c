@@ -12,6 +12,7 @@
 #include "glsl/sim/hybrid_params.h"
 #include "glsl/sim/inbetween_params.h"
 #include "glsl/sim/pose_params.h"
+#include "glsl/sim/rod_params.h"
 #include "glsl/sim/rope_params.h"
 #include "glsl/sim/split_params.h"
 #include "glsl/sim/spring_params.h"
@@ -116,8 +117,9 @@ static GLuint build(const char *shader)
     GLuint program;
     const ShaderDefine defines[] = {
         {"GROUP_SIZE", 8}, {"STRANDS", 1},  {"IN_REGISTERS", 0}, {"VERTICES", 4}, {"SHELTER", 0},
-        {"LEAD", 0},       {"THESIS", 0},   {"DRAGGED", 0},      {"STYLED", 1},   {"BENDS", 1},
-        {"BULLET", 0},     {"IMPLICIT", 1}, {"TRESSFX4", 0},     {"GUARDED", 1},  {0}};
+        {"LEAD", 0},       {"THESIS", 0},   {"DRAGGED", 0},      {"STYLED", 1},   {"JOINTS", 1},
+        {"BULLET", 0},     {"IMPLICIT", 1}, {"TRESSFX4", 0},     {"GUARDED", 1},
+        {"EQUAL", 0},      {"BALANCED", 1}, {0}};
     assert_int_equal(shader_build_compute(&program, shader, defines, NULL), RESULT_OK);
     return program;
 }
@@ -152,7 +154,11 @@ static void own_blocks_of_solvers_lie_alike_in_c_and_glsl(void **state)
     SIZE(HybridParams), SPRING_AT(HybridParams, spring);
     shader_release(program);
     program = build("sim/chain.comp");
-    SIZE(ChainParams), SPRING_AT(ChainParams, spring), AT(ChainParams, bend);
+    SIZE(ChainParams), SPRING_AT(ChainParams, spring);
+    shader_release(program);
+    program = build("sim/rod.comp");
+    SIZE(RodParams), SPRING_AT(RodParams, spring), AT(RodParams, bend), AT(RodParams, twist);
+    AT(RodParams, share), AT(RodParams, area);
     shader_release(program);
     program = build("sim/tressfx.comp");
     SIZE(TressfxParams), AT(TressfxParams, local_share), AT(TressfxParams, global_share);
