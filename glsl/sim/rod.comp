@@ -186,6 +186,7 @@ float forward(Strand strand, Drive drive, bool solved)
             vec3 z = cross(w, e);
             float turned = dot(z, z) / (l * l);
             float cut = turned > FAR_TURN * FAR_TURN ? FAR_TURN * inversesqrt(turned) : 1.0;
+            if (!(turned < 1e30)) w = z = vec3(0.0); // too much for float32
             w *= cut;
             most = max(most, turned);
             d = exact_length(r, d_old + cut * z, l);

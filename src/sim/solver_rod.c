@@ -19,10 +19,14 @@ static double rod_stiffness(const SectionParams *params)
            (4 * (double)params->hair_density);
 }
 
-// Kelvin-Voigt damping of time eta takes bending eta later than the middle of the step.
+// Kelvin-Voigt damping of time eta takes bending eta later than the middle of the step: at most
+// half a step later, or MOST_LATER in shorter steps. Beyond that, strands that turn fast would be
+// bent by an extrapolation that has no meaning.
 static float bending_share(const SectionParams *params, double dt)
 {
-    return (float)fmin(0.5 + (double)params->bend_damping * 1e-3 / dt, 1);
+    const double MOST_LATER = 2e-3; // s
+    double later = fmin((double)params->bend_damping * 1e-3, fmax(dt / 2, MOST_LATER));
+    return (float)(0.5 + later / dt);
 }
 
 static void fill(void *block, StepParams *uniforms, const SolverStep *step,

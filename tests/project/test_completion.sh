@@ -92,7 +92,7 @@ offers "tractrix-bench speed --reference sr" src
 
 claim "nothing for a number"
 offers "tractrix-render --frames 1"
-offers "tractrix-bench --chain-bend "
+offers "tractrix-bench --hair-density "
 
 claim "switches are switched off"
 offers "tractrix-render --no-coll" --no-collide --no-collide-mesh

@@ -50,6 +50,6 @@ def test_the_table_is_that_of_the_programs():
     wind = table["wind"]
     assert (wind.kind, wind.unit, wind.default, wind.live, wind.of_section) == ("vec3", "m/s", "0,0,0", True, False)
     assert table["shadow"].choices == ("none", "approx", "dom")
-    assert table["chain_bend"].owner == ("chain",)
+    assert table["youngs_modulus"].owner == ("rod",)
     assert (table["fov"].minimum, table["fov"].maximum) == (1, 170)
     assert not {"output", "cache", "stats", "device", "quiet"} & set(table)

@@ -122,7 +122,7 @@ done
 program=$bin/tractrix-render
 run 0 --help color; says "--color COLOR"
 if [ "$(grep -c '^  -' "$work/out")" = 1 ]; then good; else bad "more than one entry"; fi
-run 0 --help chain; says "--chain-bend"
+run 0 --help rod; says "--youngs-modulus"
 
 claim "a hidden section costs no drawing, casts no shadow and leaves the picture as it is without it, from a cache, too"
 sections() {
@@ -163,8 +163,8 @@ run 2 $hair --look plain --shadow-size 64 -o "$work/x/"; one_line; says "--shado
 printf '{"frames": 1, "size": "16x16", "look": "plain", "shadow_size": 99, "sections": [{"file": "%s/%s"}]}\n' "$PWD" "$hair" >"$work/idle.json"
 run 0 "$work/idle.json" -o "$work/idle/"; says "idle.json: shadow_size: has no effect: --shadow is none"
 run 0 "$work/idle.json" -o "$work/idle/" -q; silent err
-printf '{"sections": [{"file": "%s/%s", "chain_bend": 9}]}\n' "$PWD" "$hair" >"$work/owner.json"
-run 2 "$work/owner.json" -o "$work/x/"; one_line; says "owner.json: sections[0].chain_bend: algo 'hybrid' has no such parameter"
+printf '{"sections": [{"file": "%s/%s", "poisson": 0.3}]}\n' "$PWD" "$hair" >"$work/owner.json"
+run 2 "$work/owner.json" -o "$work/x/"; one_line; says "owner.json: sections[0].poisson: algo 'hybrid' has no such parameter"
 run 2 $hair --algo split --variant thesiss -o "$work/x/"; one_line; says "did you mean 'thesis'"
 run 2 $hair --software --require-hardware -o "$work/x/"; one_line
 run 2 $hair -o "$work/x_%d_%d.png"; one_line

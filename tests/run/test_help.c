@@ -137,7 +137,7 @@ static void topics_list_groups_and_solvers(void **state)
     assert_non_null(strstr(rope, "Simulation: rope:"));
     assert_non_null(find_entry(rope, "--rope-iterations"));
     assert_non_null(find_entry(rope, "--style-stiffness"));
-    assert_null(find_entry(rope, "--chain-bend"));
+    assert_null(find_entry(rope, "--poisson"));
     assert_non_null(strstr(scene, "\"lights\": "));
     assert_non_null(strstr(colors, "\n  dark-blond                  #8a7150\n"));
     assert_non_null(strstr(colors, "\n  red                         #ff0000, of hair #823f27\n"));

@@ -198,6 +198,7 @@ static void scale_params(SectionParams *params, float scale)
     params->tressfx_vsp_accel_threshold *= scale;
     params->tressfx_clamp_position_delta *= scale;
     params->spring_angular *= scale;
+    params->hair_radius *= scale * scale; // B/(rho A) is in m^4/s^2
 }
 
 static void check_unit(const SolverType *type, const char *variant)

@@ -109,13 +109,14 @@ static void long_run_velocities(LongRun *run, Vec now[LONG_SIZES][LONG_KINDS][LO
 // belong to its middle.
 static bool ends_with_velocities(const SolverType *type)
 {
-    return strcmp(type->name, "hybrid") == 0 || strcmp(type->name, "emulation") == 0;
+    return strcmp(type->name, "hybrid") == 0 || strcmp(type->name, "emulation") == 0 ||
+           strcmp(type->name, "rod") == 0;
 }
 
 // Kinetic and potential energy minus the start's energy, relative to what the strand can lose: 0 at
 // the start, -1 when it hangs at rest. `v` are the velocities of the last dt seconds that led to
-// the positions `q`; dt = 0: the velocities at `q`.
-static double energy(const Vec *start, const Vec *q, const Vec *v, double dt, int n)
+// the positions `q`; dt = 0: the velocities at `q`. `tip`: the mass of the tip; the others have 1.
+static double energy(const Vec *start, const Vec *q, const Vec *v, double dt, int n, double tip)
 {
     const double g = 9.81;
     double sum = 0, budget = 0, length = 0;
@@ -123,8 +124,9 @@ static double energy(const Vec *start, const Vec *q, const Vec *v, double dt, in
         Vec segment;
         vec_add_scaled(start[j], -1, start[j - 1], segment);
         length += vec_norm(segment);
-        sum += vec_dot(v[j], v[j]) / 2 + g * (q[j][1] - v[j][1] * dt / 2 - start[j][1]);
-        budget += g * (start[j][1] - start[0][1] + length);
+        double mass = j == n - 1 ? tip : 1;
+        sum += mass * (vec_dot(v[j], v[j]) / 2 + g * (q[j][1] - v[j][1] * dt / 2 - start[j][1]));
+        budget += mass * g * (start[j][1] - start[0][1] + length);
     }
     return sum / budget;
 }
@@ -141,7 +143,8 @@ static void check_frame(LongRun *run, const SolverType *type, double most[LONG_S
             const Vec *start = (const Vec *)run->start[i][kind], *q = (const Vec *)now[i][kind];
             int n = LONG_COUNTS[i];
             double dt = ends_with_velocities(type) ? 0 : small_step(&run->fixture);
-            double e = energy(start, q, (const Vec *)run->v[i][kind], dt, n);
+            double e = energy(start, q, (const Vec *)run->v[i][kind], dt, n,
+                              strcmp(type->name, "rod") == 0 ? 0.5 : 1);
             double error = every_solver_length_error(start, q, n);
             every_solver_require(isfinite(e), type, variant, "n = %.0f: a position is not finite",
                                  n);

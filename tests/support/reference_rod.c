@@ -254,7 +254,7 @@ static void open(RodStep *rod, const TwinStrand *strand, const TwinStep *step,
 {
     double c = step->drag, share = (double)params->style, dt = step->dt;
     rod->step = step, rod->n = strand->n;
-    rod->share = fmin(0.5 + (double)params->bend_damping * 1e-3 / dt, 1);
+    rod->share = 0.5 + fmin((double)params->bend_damping * 1e-3, fmax(dt / 2, 2e-3)) / dt;
     rod->stiffness = (double)params->style_stiffness * share / (1 - share);
     rod->gain = c > 0 ? -expm1(-c * dt) / c : dt;
     twin_style(strand, &step->head, 0, rod->root);
