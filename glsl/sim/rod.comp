@@ -20,12 +20,12 @@
 //   2. backward, from tip to root: the moment G of the joints, the residual of each particle, its
 //      running sum N, tensions lambda_j = -N_j.e_j/|e_j|^2, and the elimination (rod_front.glsl).
 //      The matrix is the second derivative of the energy by turns of the frames, t_j = exp(w_j) t_j
-//      and a_j = exp(v) a_j with v = w_{j-1} (rest_shape.c derives it): with M = gamma (tau - tau0),
-//      c = a.t, h = (a + t)/(1 + c), k = t x a/(1 + c) and f = dE/d(segment), its forms are
+//      and a_j = exp(v) a_j with v = w_{j-1} (rest_shape.c derives it): with M = gamma (tau -
+//      tau0), c = a.t, h = (a + t)/(1 + c), k = t x a/(1 + c) and f = dE/d(segment), its forms are
 //          beta/2 (|w|^2 - (w.a)(w.t) + |v|^2 - (v.a)(v.t)) - beta (c w.v - (w.a)(v.t))
 //          gamma/2 (h.(w - v))^2 + M/2 (v.(h x w) - (h.(w - v)) (k.(w - v))) - (w.e)(w.f)/2
-//      The exact first two terms have c |w|^2, c |v|^2; with 1 the strands of a fast step are off by
-//      half as much. Without the terms in M and f, loaded curls at rest diverge at long steps.
+//      The exact first two terms have c |w|^2, c |v|^2; with 1 the strands of a fast step are off
+//      by half as much. Without the terms in M and f, loaded curls at rest diverge at long steps.
 // There are two rounds, and a third for strands that turned far in the second.
 //
 // The limiter: the step's energy X = E+ - E + sum u.(residual without joints) - work of the clamp's
@@ -35,7 +35,7 @@
 //
 // JOINTS 0: no bending and no twist. EQUAL 1: particles have equal masses, as in other solvers.
 //
-// State: twist tau_j in velocities[].w; in the root's, E less the gain that is not paid.
+// State: twist tau_j in velocities[].w; in the root's, the gain that is not paid.
 #include "sim/rod_params.h"
 #include "sim/particles.glsl"
 #include "sim/strand.glsl"
@@ -52,10 +52,13 @@ const float NOISE = 1e-6; // of a strand's length; rounding errors are 6e-8
 // its velocity for ever. 1.95 delays the root's acceleration by 0.013 dt.
 const float ROOT_TURNS = 1.95;
 
+// Number of strands that the limiter has slowed down, in all steps.
+layout(std430, binding = BIND_TIPS) buffer Slowed { uint slowed; };
+
 // What acts on the particles of a strand, in the root's frame.
 struct Drive {
-    vec3 clamp_turn; // rotation vector of the clamp in the step
-    vec4 clamp;      // its rotation when bending is taken
+    vec3 clamp_turn;              // rotation vector of the clamp in the step
+    vec4 clamp;                   // its rotation when bending is taken
     vec3 root_before, root_after; // velocities of the root, m/s
 };
 
@@ -63,8 +66,7 @@ Drive drive_open(Strand strand)
 {
     Drive drive;
     drive.root_before = velocity_before(strand.address).xyz;
-    drive.root_after =
-        drive.root_before + ROOT_TURNS * (strand.root_velocity - drive.root_before);
+    drive.root_after = drive.root_before + ROOT_TURNS * (strand.root_velocity - drive.root_before);
     vec4 old = frame_rotation_old, now = strand.rotation;
     if (dot(old, now) < 0.0) old = -old;
     drive.clamp_turn = 2.0 * (old.w * now.xyz - now.w * old.xyz - cross(now.xyz, old.xyz));
@@ -153,13 +155,12 @@ vec3 style_of_tip(Strand strand)
     return style;
 }
 
-// The segment's change in the step, scaled so that r + d has the length l.
+// The segment's change in the step, such that r + d keeps the length l. What rounding made of the
+// length of r is no change.
 vec3 exact_length(vec3 r, vec3 d, float l)
 {
     vec3 e = r + d;
-    float ee = dot(e, e);
-    float off = ee > 0.0 ? l * inversesqrt(ee) - 1.0 : 0.0;
-    return d + off * e;
+    return relative_turn(r, d, l, length(e), 0.0, direction(e));
 }
 
 // From root to tip. SOLVED: applies the solution of the round before; otherwise predicts that
@@ -259,8 +260,8 @@ vec3 backward(Strand strand, Drive drive)
         front.E += diagonal(kb) - bent - 0.5 * share * symmetric(e, by);
         G = kb * (outerProduct(a, t) - diagonal(c)), E_before = diagonal(kb) - bent;
         vec3 h = twist_axis(a, t), k = cross(t, a) / max(1.0 + c, 0.1);
-        float gamma = beta * rod_params.twist,
-              M = gamma * (move.w - fetch_natural(strand, j).w), off = M + dot(beyond, t);
+        float gamma = beta * rod_params.twist, M = gamma * (move.w - fetch_natural(strand, j).w),
+              off = M + dot(beyond, t);
         mat3 twist = share * (gamma * outerProduct(h, h) - 0.5 * M * symmetric(h, k));
         front.E += twist;
         front.s -= off * h;
@@ -288,39 +289,65 @@ float allowed_gain(Strand strand)
             0.5 * speed * speed);
 }
 
+// E at the step's start. It is not stored by the step before: collisions have moved the strand
+// since.
+float stored_energy(Strand strand)
+{
+    float energy = 0.0;
+#if JOINTS
+    vec3 q_before = vec3(0.0);
+    vec4 frame = frame_rotation_old;
+    int last = LAST;
+    for (int j = 1; j <= last; ++j) {
+        vec3 q = fetch_position(strand, j), t = direction(q - q_before);
+        vec4 s = fetch_natural(strand, j);
+        float tau = velocity_before(strand.address + j * STRAND_TILE).w;
+        vec3 a = rotate(frame, s.xyz);
+        energy +=
+            joint_energy(joint_stiffness(strand, j, fetch_rest(strand, j).w), a, t, tau - s.w);
+        frame = frame_beyond(frame, a, t, tau);
+        q_before = q;
+    }
+#endif
+    return energy;
+}
+
 // From root to tip: writes positions and velocities and accounts for the energy.
-void finish(Strand strand, Drive drive, vec3 clamp_moment)
+void finish(Strand strand, Drive drive, vec3 clamp_moment, float energy_before)
 {
     int last = LAST;
     float energy = 0.0, worked = -dot(clamp_moment, drive.clamp_turn), kinetic = 0.0,
-          energy_before = velocity_before(strand.address).w;
-    vec3 q_before = vec3(0.0), u_before = vec3(0.0), style = vec3(0.0);
+          owed = velocity_before(strand.address).w;
+    vec3 q_before = vec3(0.0), u_before = vec3(0.0), style = vec3(0.0), x = vec3(0.0);
     vec4 frame = strand.rotation;
     for (int k = 0; k < last; ++k) {
         int j = k + 1, at = strand.address + j * STRAND_TILE;
         vec4 rest_here = fetch_rest(strand, j), move = recall_move(j);
         float l = rest_here.w, l_beyond = j < last ? fetch_rest(strand, j + 1).w : 0.0, stiff,
               mass = mass_at(strand, l, l_beyond, j);
-        vec3 q = fetch_position(strand, j), v = fetch_speed(strand, j, drive), u = move.xyz;
+        vec3 q = fetch_position(strand, j), v = fetch_speed(strand, j, drive), u = move.xyz,
+             t = direction(q - q_before + (u - u_before));
+        x += l * t;
 #if STYLED
         style = next_style(style, rest_here, strand.rotation);
 #endif
         worked += dot(u, residual(strand, drive, j, mass, u, v, q + u, style, stiff));
 #if JOINTS
         vec4 s = fetch_natural(strand, j);
-        vec3 t = direction(q - q_before + u - u_before), a = rotate(frame, s.xyz);
+        vec3 a = rotate(frame, s.xyz);
         energy += joint_energy(joint_stiffness(strand, j, l), a, t, move.w - s.w);
         frame = frame_beyond(frame, a, t, move.w);
 #endif
         vec3 v_now = 2.0 / strand.dt * u - v;
         kinetic += 0.5 * mass * dot(v_now, v_now);
         velocities[at] = vec4(drive.root_after + v_now, move.w);
-        store_position(strand, at, q + u);
+        store_position(strand, at, x);
         q_before = q, u_before = u;
     }
-    float gained = energy - energy_before + worked;
+    float gained = owed + energy - energy_before + worked;
     float over = gained - allowed_gain(strand);
     if (over > 0.0 && over < 1e30) {
+        atomicAdd(slowed, 1u);
         float paid = min(over, kinetic), kept = sqrt(max(1.0 - paid / max(kinetic, 1e-30), 0.0));
         for (int j = 1; j <= last; ++j) {
             int at = strand.address + j * STRAND_TILE;
@@ -331,13 +358,14 @@ void finish(Strand strand, Drive drive, vec3 clamp_moment)
     }
     if (!(gained > 0.0 && gained < 1e30)) gained = 0.0;
     store_root(strand);
-    velocities[strand.address] = vec4(drive.root_after, energy - gained);
+    velocities[strand.address] = vec4(drive.root_after, gained);
 }
 
 void step_strand(int s)
 {
     Strand strand = strand_open(s, rod_params.spring);
     Drive drive = drive_open(strand);
+    float energy = stored_energy(strand);
     forward(strand, drive, false);
     vec3 clamp_moment;
     for (int round = 0; round < 3; ++round) {
@@ -345,6 +373,6 @@ void step_strand(int s)
         float most = forward(strand, drive, true);
         if (round == 1 && !(most > THIRD_ROUND * THIRD_ROUND)) break;
     }
-    finish(strand, drive, clamp_moment);
+    finish(strand, drive, clamp_moment, energy);
 }
 #include "sim/each_strand.glsl"

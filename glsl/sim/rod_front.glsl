@@ -6,8 +6,8 @@
 // condensed into a quadratic form of dx_j and w_j, the front:
 //     dx.A dx/2 + w.C^T dx + w.E w/2 - p.dx - s.w
 // Joint j adds to it, and couples w_j with w_{j-1} by `G`. With K = A [.x e_j] + C, minimising over
-// w_j gives H w_j = b - K^T dx_{j-1} - G w_{j-1}, which is kept as w_j = v - U dx_{j-1} - W w_{j-1}.
-// Matrices are columns.
+// w_j gives H w_j = b - K^T dx_{j-1} - G w_{j-1}, which is kept as w_j = v - U dx_{j-1} - W
+// w_{j-1}. Matrices are columns.
 
 struct Front {
     mat3 A, C, E;

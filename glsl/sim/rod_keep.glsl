@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What `rod` keeps for each particle between two sweeps, in scratch memory. (Strands of 32 vertices in
-// registers take nine tenths of the time but compile for 14 s instead of 0.7 s on a CPU driver.)
+// What `rod` keeps for each particle between two sweeps, in scratch memory. (Strands of 32 vertices
+// in registers take nine tenths of the time but compile for 14 s instead of 0.7 s on a CPU driver.)
 // Needs particles.glsl, rod_front.glsl.
 #define LAST int(step_params.vertex_count - 1u)
 #include "sim/scratch.glsl"

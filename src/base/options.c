@@ -74,12 +74,21 @@ const Option *options_find(const Option *options, size_t count, const char *name
     return NULL;
 }
 
+// Options of earlier versions, and what takes their place.
+static const struct {
+    const char *flag, *instead;
+} GONE[] = {{"--chain-bend", "--algo rod bends and twists (--youngs-modulus)"}};
+
 static Result fail_unknown(const OptionsWalk *walk, const char *flag, Error *error)
 {
     const char *names[OPTIONS_MOST + 2] = {"help", "version"};
     const char *word = flag + 2;
     assert(walk->option_count <= OPTIONS_MOST);
     bool long_name = strncmp(flag, "--", 2) == 0, negated = long_name && !strncmp(word, "no-", 3);
+    for (size_t i = 0; i < sizeof GONE / sizeof *GONE; ++i)
+        if (strcmp(flag, GONE[i].flag) == 0)
+            return error_set(error, RESULT_USAGE, "%s: no such option any more: %s", flag,
+                             GONE[i].instead);
     for (size_t i = 0; i < walk->option_count; ++i) names[i + 2] = walk->options[i].name;
     const char *nearest =
         long_name ? suggest_nearest(word + 3 * negated, names, walk->option_count + 2) : NULL;

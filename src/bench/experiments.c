@@ -246,8 +246,8 @@ static bool beam_set_up(Setup *setup)
         setup->exact[j][1] = setup->exact[j - 1][1] - LENGTH / n * sin(angle[j]);
     }
     snprintf(setup->scenario, sizeof setup->scenario, "spring-angular %g, %d links", stiffness, n);
-    snprintf(setup->settings, sizeof setup->settings,
-             "--style 0.5 --drag 5 --spring-angular %g", stiffness);
+    snprintf(setup->settings, sizeof setup->settings, "--style 0.5 --drag 5 --spring-angular %g",
+             stiffness);
     return true;
 }
 
@@ -360,9 +360,9 @@ static double own_energy(const Run *run, uint32_t s, const double (*start)[3],
 {
     const Trial *trial = &run->trial;
     const GpuBuffer *velocities = trial_buffer(trial, 0, SOLVER_VELOCITIES);
-    bool at_end =
-        strcmp(run->method->algo, "hybrid") == 0 || strcmp(run->method->algo, "rod") == 0 ||
-        strcmp(run->method->algo, "emulation") == 0;
+    bool at_end = strcmp(run->method->algo, "hybrid") == 0 ||
+                  strcmp(run->method->algo, "rod") == 0 ||
+                  strcmp(run->method->algo, "emulation") == 0;
     double a[EXPERIMENT_POINTS][3] = {{0}}, b[EXPERIMENT_POINTS][3] = {{0}};
     double h = trial->step.dt / solver_substeps(&trial->solver, &trial->step);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -456,7 +456,8 @@ static Result rate_measure(Run *run, Error *error)
                 sum += pow((double)run->trial.points[j][k] - (double)finest[f][j][k], 2);
     }
     if (!run->finest)
-        experiment_add(run, "from finest", sqrt(sum / (RATE_FRAMES * (motion->n - 1))) / motion->length);
+        experiment_add(run, "from finest",
+                       sqrt(sum / (RATE_FRAMES * (motion->n - 1))) / motion->length);
     return RESULT_OK;
 }
 
@@ -484,7 +485,8 @@ static Result scale_measure(Run *run, Error *error)
         if (run->setup->units == 1) metres[run->rate][i / 3][i % 3] = x;
         if (i >= 3) sum += pow((double)metres[run->rate][i / 3][i % 3] - (double)x, 2);
     }
-    if (run->setup->units != 1) experiment_add(run, "from metres", sqrt(sum / (SCALE_N - 1)) / LENGTH);
+    if (run->setup->units != 1)
+        experiment_add(run, "from metres", sqrt(sum / (SCALE_N - 1)) / LENGTH);
     return RESULT_OK;
 }
 
@@ -493,15 +495,25 @@ static Result scale_measure(Run *run, Error *error)
 #define LOOSE "--style 0"
 #define DRAWN "--style 0 --stretch-drawn true"
 const Experiment EXPERIMENTS[] = {
-    {"motions", {60, 120, 240}, NULL, LOOSE, ORDER, FOLD_MEAN, motions_set_up,
-     motions_measure},
-    {"pendulum", {60, 120, 240}, NULL, LOOSE, ORDER, 0, pendulum_set_up,
-     pendulum_measure},
+    {"motions", {60, 120, 240}, NULL, LOOSE, ORDER, FOLD_MEAN, motions_set_up, motions_measure},
+    {"pendulum", {60, 120, 240}, NULL, LOOSE, ORDER, 0, pendulum_set_up, pendulum_measure},
     {"static", {60}, "style_stiffness", "", 0, 0, static_set_up, rest_measure},
-    {"physics", {60}, "youngs_modulus", "", 0, 0, physics_cantilever_set_up,
+    {"physics",
+     {60},
+     "youngs_modulus",
+     "",
+     0,
+     0,
+     physics_cantilever_set_up,
      physics_cantilever_measure},
     {"physics", {60}, "youngs_modulus", "", 0, 0, physics_curl_set_up, physics_curl_measure},
-    {"physics", {60, 120, 240, 480}, "youngs_modulus", "", ORDER, 0, physics_motion_set_up,
+    {"physics",
+     {60, 120, 240, 480},
+     "youngs_modulus",
+     "",
+     ORDER,
+     0,
+     physics_motion_set_up,
      motions_measure},
     {"drift", {60}, NULL, "", 0, 0, drift_set_up, drift_measure},
     {"beam", {30, 240}, "spring_angular", "", 0, 0, beam_set_up, beam_measure},
@@ -514,7 +526,8 @@ const Experiment EXPERIMENTS[] = {
 const int EXPERIMENT_COUNT = sizeof EXPERIMENTS / sizeof *EXPERIMENTS;
 
 bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder,
-                        const MotionFolder *rods, const Method *method, double seconds, int number, Setup *setup)
+                        const MotionFolder *rods, const Method *method, double seconds, int number,
+                        Setup *setup)
 {
     if (experiment->param && !trial_has(method, experiment->param)) return false;
     *setup = (Setup){.strand_count = 1, .drag = NAN, .units = 1};

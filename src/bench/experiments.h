@@ -28,10 +28,10 @@ typedef struct Setup {
     const Motion *motion; // replaces start, head motion and forces above; NULL: gravity only
     bool in_all;          // counts in the row of all cases
     double seconds;       // of long runs
-    double length;                      // m, of strands whose length is not that of the others
+    double length;        // m, of strands whose length is not that of the others
     double exact[EXPERIMENT_POINTS][3]; // the exact rest positions of the particles, m
-    const Csv *csv;   // the tip's motion: columns from `column` on, x, y and,
-    size_t column;    // with 3 axes, z
+    const Csv *csv;                     // the tip's motion: columns from `column` on, x, y and,
+    size_t column;                      // with 3 axes, z
     int axes;
 } Setup;
 
@@ -75,7 +75,8 @@ void experiment_add(Run *run, const char *what, double value);
 
 // Fills case `number` (from 0 on) of an experiment; false: the method has no more cases.
 bool experiments_set_up(const Experiment *experiment, const MotionFolder *folder,
-                        const MotionFolder *rods, const Method *method, double seconds, int number, Setup *setup);
+                        const MotionFolder *rods, const Method *method, double seconds, int number,
+                        Setup *setup);
 
 // Simulates and measures run->method in run->setup. RESULT_INTERRUPTED after an interrupt.
 Result experiments_run(const Experiment *experiment, Run *run, const Gpu *gpu, double rate,

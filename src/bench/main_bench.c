@@ -373,7 +373,8 @@ static const struct {
      "beside it)"},
     {"accuracy", accuracy_run,
      "errors of solvers against exact solutions. Parts: motions, work (time beside error), "
-     "pendulum, static, drift, beam, stretch, energy, rate, scale"},
+     "pendulum, static, drift, beam, physics, stretch, energy, "
+     "rate, scale"},
     {"speed", speed_run,
      "times of the solvers' steps. Parts: memory, sets (--set, --tfx, or all test sets of the "
      "thesis and the named files; with --size also drawing), c (split in plain C), strands, "

@@ -17,8 +17,8 @@ static double stiffness(void)
 }
 
 // --- Cantilever. psi is the angle of the tangent from straight down, sigma the distance from the
-// tip over (B/w)^(1/3): the moment of the weight beyond bends, psi'' = sigma sin psi, with psi'(0) =
-// 0. The clamp is where psi = pi/2, at sigma = gamma^(1/3). psi(0) is found by bisection of its
+// tip over (B/w)^(1/3): the moment of the weight beyond bends, psi'' = sigma sin psi, with psi'(0)
+// = 0. The clamp is where psi = pi/2, at sigma = gamma^(1/3). psi(0) is found by bisection of its
 // logarithm, since it is tiny for long hair.
 
 typedef struct Tangent {
@@ -94,8 +94,9 @@ Result physics_cantilever_measure(Run *run, Error *error)
     trial_advance(&run->trial, NULL, SETTLE_S);
     TRY(trial_read(&run->trial, error));
     const float *tip = run->trial.points[setup->n - 1];
-    experiment_add(run, "tip error", hypot((double)tip[0] / setup->length - setup->exact[0][0],
-                                           -(double)tip[1] / setup->length - setup->exact[0][1]));
+    experiment_add(run, "tip error",
+                   hypot((double)tip[0] / setup->length - setup->exact[0][0],
+                         -(double)tip[1] / setup->length - setup->exact[0][1]));
     experiment_add(run, "drop over reach", -(double)tip[1] / (double)tip[0]);
     return RESULT_OK;
 }

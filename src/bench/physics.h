@@ -5,8 +5,8 @@
 
 #include "bench/experiments.h"
 
-// The tip of an inextensible elastic cantilever that is clamped horizontally and bends under its own
-// weight: its distance from the clamp and its drop, over the length. `gamma`: weight per length
+// The tip of an inextensible elastic cantilever that is clamped horizontally and bends under its
+// own weight: its distance from the clamp and its drop, over the length. `gamma`: weight per length
 // times length cubed over bending stiffness, 1e-3 .. 1e5.
 void physics_cantilever(double gamma, double *along, double *drop);
 

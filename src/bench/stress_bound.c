@@ -105,8 +105,8 @@ static double flutter_number(const StressCase *stress, const SectionParams *para
     return square > 0 ? fmin(n * g / (link * square), 1e18) : 0;
 }
 
-// Whether steps are as short as docs/solver_derivations.md asks of `rod`. In longer steps inertia no
-// longer keeps the system of a stiff strand regular: float32 cannot solve it.
+// Whether steps are as short as docs/solver_derivations.md asks of `rod`. In longer steps inertia
+// no longer keeps the system of a stiff strand regular: float32 cannot solve it.
 static bool is_stable_rod(const StressCase *stress, double g)
 {
     double dt = stress->value[STRESS_dt], links = stress->value[STRESS_n] - 1,

@@ -380,6 +380,12 @@ static void report_result(const Run *run, const Sequence *sequence, double ms)
     if (report.moves_limited && run->scene.run.verbose)
         fprintf(stderr, "%llu moves of vertices were shortened to 100 strand lengths a step\n",
                 (unsigned long long)report.moves_limited);
+    if (report.groom_weight > 0 && run->scene.run.verbose)
+        fprintf(stderr, "forces that hold the groom, beside its fibres: %.2f of its weight\n",
+                report.groom_held / report.groom_weight);
+    if (report.strands_slowed && run->scene.run.verbose)
+        fprintf(stderr, "%.2g %% of the strands' steps gained energy and were slowed down\n",
+                1e2 * (double)report.strands_slowed / (double)run->simulation.strand_steps);
     const CacheWriter *cache = &run->source.writer;
     if (cache->frame_count && run->scene.run.verbose)
         fprintf(stderr, "%s: %u frames, %.3g MB, %.3g ms a frame to pack and write\n",

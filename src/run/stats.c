@@ -161,6 +161,10 @@ static json_t *describe_counts(const Simulation *simulation, int frames_drawn, i
                         json_integer((json_int_t)simulation->poses_skipped));
     json_object_set_new(counts, "head_jumps", json_integer((json_int_t)simulation->jumps));
     json_object_set_new(counts, "moves_limited", json_integer((json_int_t)report.moves_limited));
+    if (report.groom_weight > 0)
+        json_object_set_new(counts, "groom_held_share",
+                            json_real(report.groom_held / report.groom_weight));
+    json_object_set_new(counts, "strands_slowed", json_integer((json_int_t)report.strands_slowed));
     json_object_set_new(counts, "contacts", json_integer((json_int_t)report.contacts));
     json_object_set_new(counts, "deepest_found_m", json_real((double)report.deepest_found));
     json_object_set_new(counts, "deepest_left_m", json_real((double)report.deepest_left));

@@ -33,8 +33,12 @@ typedef struct SolverSetup {
 
 // Numbers of events so far, for the statistics.
 typedef struct SolverReport {
-    uint64_t moves_limited; // moves that were cut, because they went too far for float32
-    uint64_t contacts;      // particles that touched a collider in the last step
+    uint64_t moves_limited;  // moves that were cut, because they went too far for float32
+    uint64_t strands_slowed; // in all steps: strands of `rod` whose energy was limited
+    // Of grooms that elastic strands carry, m^2/s^2 a strand, added up: their weight, and the
+    // forces that hold what the strands cannot carry.
+    double groom_weight, groom_held;
+    uint64_t contacts; // particles that touched a collider in the last step
     // m: depth of the deepest particle in a collider (margin included), before and after it was
     // pushed out.
     float deepest_found, deepest_left;
@@ -61,7 +65,6 @@ typedef struct RestBatch {
     const float (*rest)[4];  // as HairBatch.rest
     float (*natural)[4];     // written: direction, unloaded twist (rod_joint.glsl)
     float (*held)[4];        // written: the force that holds each particle (rod.comp)
-    float (*state)[4];       // written: the root's texel of the state
     double weight, supports; // added: weight of the strands, and of it what is held
 } RestBatch;
 
@@ -92,9 +95,12 @@ typedef struct SolverRecipe {
     // filled with the parameters at that vertex (`there`), `mean` with the means of the profiles.
     // NULL: the solver uses the means.
     void (*along)(float texel[4], const void *block, const void *mean, const SectionParams *there);
-    // For solvers that find a shape whose own elasticity carries the weight of the groom, instead of
-    // the difference of gravity that the others apply (solver.c). RESULT_FAILED when memory is short.
+    // For solvers that find a shape whose own elasticity carries the weight of the groom, instead
+    // of the difference of gravity that the others apply (solver.c). RESULT_FAILED when memory is
+    // short.
     Result (*balance)(RestBatch *batch, Error *error);
+    // The shader counts strands that it slows down (a uint at BIND_TIPS).
+    bool counts;
     // Number of equal sub-steps that a step needs for the longest strand; NULL: 1.
     int (*substeps)(const SolverStep *step, const SectionParams *params, const Hair *hair);
     // Number of dispatches (StepParams.phase) of a sub-step if strands are not in registers; NULL:

@@ -31,7 +31,8 @@ static void add(double a[3], double s, const double b[3])
 }
 
 // Holds particle j so that its segment is not compressed too much and the torque T at its joint is
-// not too large; `limit` reduces both bounds. Adds the force to W, the force on everything beyond, and its torque to T.
+// not too large; `limit` reduces both bounds. Adds the force to W, the force on everything beyond,
+// and its torque to T.
 static void hold(RestJoint *joint, double reach, double limit, double W[3], double T[3])
 {
     double l = joint->length, along = dot(T, joint->t), across[3], size, force[3];
@@ -98,8 +99,8 @@ static void balance(RestJoint *joints, int n, double ratio, double limit)
 // --- Whether the shape is a minimum of energy.
 //
 // Frame j turns by the rotation vector w_j: t_j = exp(w_j) t_j, and a_j = exp(v) a_j with v =
-// w_{j-1}. The second order of the joint's bending, of its twist (M = gamma (tau - tau0)), and of the
-// force W on everything beyond:
+// w_{j-1}. The second order of the joint's bending, of its twist (M = gamma (tau - tau0)), and of
+// the force W on everything beyond:
 //     bend: beta/2 (c |w|^2 - (w.a)(w.t) + c |v|^2 - (v.a)(v.t)) - beta (c w.v - (w.a)(v.t)),
 //     twist: gamma/2 (h.(w - v))^2 + M/2 (v.(h x w) - (h.(w - v)) (k.(w - v))),
 //     weight: l/2 ((W.t) |w|^2 - (w.t)(w.W)),
@@ -211,19 +212,13 @@ static void find_natural(RestJoint *joints, int n)
     }
 }
 
-double rest_shape_solve(RestJoint *joints, int n, double ratio)
+void rest_shape_solve(RestJoint *joints, int n, double ratio)
 {
-    double limit = 1, energy = 0;
+    double limit = 1;
     for (int i = 0; i <= HALVINGS; ++i, limit /= 2) {
         if (i == HALVINGS) limit = 0;
         balance(joints, n, ratio, limit);
         if (is_minimum(joints, n, ratio)) break;
     }
     find_natural(joints, n);
-    for (int j = 1; j <= n; ++j) {
-        double off = 0, twist = joints[j].twist;
-        for (int k = 0; k < 3; ++k) off += pow(joints[j].t[k] - joints[j].a[k], 2);
-        energy += 0.5 * joints[j].beta * (off + ratio * twist * twist);
-    }
-    return energy;
 }

@@ -101,10 +101,11 @@ bool solver_keeps_groom(const SectionParams *params)
 typedef struct SolverState SolverState;
 
 typedef struct SolverBatch {
-    GpuBuffer state;   // a vec4 per particle: velocities or segments, see SolverStateKind
-    GpuBuffer tips;    // only for SOLVER_SEGMENTS: two vec4 per strand
-    GpuBuffer scratch; // SolverRecipe.scratch
+    GpuBuffer state;         // a vec4 per particle: velocities or segments, see SolverStateKind
+    GpuBuffer tips;          // only for SOLVER_SEGMENTS: two vec4 per strand
+    GpuBuffer scratch;       // SolverRecipe.scratch
     GpuBuffer natural, held; // SolverRecipe.balance
+    GpuBuffer slowed;        // SolverRecipe.counts: a number
 } SolverBatch;
 
 struct SolverState {
@@ -151,6 +152,7 @@ static void destroy(SolverState *state)
         gpu_buffer_destroy(&state->batches[i].scratch);
         gpu_buffer_destroy(&state->batches[i].natural);
         gpu_buffer_destroy(&state->batches[i].held);
+        gpu_buffer_destroy(&state->batches[i].slowed);
     }
     free(state->batches);
     free(state->own);
@@ -251,36 +253,33 @@ static Result create_segments(SolverState *state, uint32_t i, const SolverSetup 
     return result;
 }
 
-// Finds the groom's shape without load, and starts the state with the energy of its load.
+// Finds the groom's shape without load.
 static Result balance_batch(SolverState *state, uint32_t i, const GpuLimits *limits, Error *error)
 {
     const HairBatch *hair = &state->hair->batches[i];
     SolverBatch *batch = &state->batches[i];
     int64_t size = hair->rest.size;
     Float4 *rest = gpu_buffer_read(&hair->rest), *natural = calloc(1, (size_t)size),
-           *held = calloc(1, (size_t)size), *start = calloc(1, (size_t)size);
+           *held = calloc(1, (size_t)size);
     RestBatch of = {.hair = hair,
                     .params = state->params,
                     .lead = state->programs.leads[i],
                     .gravity = state->rest_gravity,
                     .rest = (const float(*)[4])rest,
                     .natural = natural,
-                    .held = held,
-                    .state = start};
+                    .held = held};
     Result result = RESULT_OK;
-    if (!rest || !natural || !held || !start)
+    if (!rest || !natural || !held)
         result = error_set(error, RESULT_FAILED, "no memory for the groom's balance");
     THEN(result, state->recipe->balance(&of, error));
     THEN(result, gpu_buffer_create(&batch->natural, limits, "natural shapes", size, natural,
                                    GL_RGBA32F, error));
     THEN(result, gpu_buffer_create(&batch->held, limits, "forces that hold the groom", size, held,
                                    GL_RGBA32F, error));
-    if (result == RESULT_OK) gpu_buffer_write(&batch->state, 0, start, size);
     state->weight += of.weight, state->supports += of.supports;
     free(rest);
     free(natural);
     free(held);
-    free(start);
     return result;
 }
 
@@ -296,13 +295,17 @@ static Result create_batch(SolverState *state, uint32_t i, const SolverSetup *se
                           error));
     gpu_buffer_clear(&batch->state, 0);
     if (state->recipe->balance && state->keeps) TRY(balance_batch(state, i, limits, error));
+    if (state->recipe->counts) {
+        TRY(gpu_buffer_create(&batch->slowed, limits, "a count", sizeof(uint32_t), NULL, 0, error));
+        gpu_buffer_clear(&batch->slowed, 0);
+    }
     if (!scratch || state->programs.in_registers) return RESULT_OK;
     uint64_t lanes = step_programs_lanes(&state->programs, hair->strand_count),
              tiles = (lanes + STRAND_TILE - 1) / STRAND_TILE;
-    return gpu_buffer_create(&batch->scratch, limits, "a solver's scratch memory",
-                             (int64_t)(tiles * STRAND_TILE * hair->vertex_count * scratch *
-                                       sizeof(Float4)),
-                             NULL, GL_RGBA32F, error);
+    return gpu_buffer_create(
+        &batch->scratch, limits, "a solver's scratch memory",
+        (int64_t)(tiles * STRAND_TILE * hair->vertex_count * scratch * sizeof(Float4)), NULL,
+        GL_RGBA32F, error);
 }
 
 static void set_rest_gravity(SolverState *state, const SolverSetup *setup)
@@ -468,6 +471,7 @@ static void dispatch(SolverState *state, uint32_t i, StepParams *uniforms, const
     gpu_buffer_bind_texture(&batch->state, BIND_STATE);
     along_bind(&state->along, i);
     bind_frames(state, i);
+    if (batch->slowed.buffer) gpu_buffer_bind_storage(&batch->slowed, BIND_TIPS);
     if (batch->natural.buffer) gpu_buffer_bind_texture(&batch->natural, BIND_NATURAL);
     if (batch->held.buffer) gpu_buffer_bind_texture(&batch->held, BIND_HELD);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
@@ -558,6 +562,13 @@ void solver_report(const Solver *solver, SolverReport *report)
 {
     const SolverState *state = solver->state;
     collision_report(&state->collision, report);
+    report->groom_weight += state->weight, report->groom_held += state->supports;
+    for (uint32_t i = 0; state->batches && i < state->hair->batch_count; ++i) {
+        uint32_t *slowed =
+            state->batches[i].slowed.buffer ? gpu_buffer_read(&state->batches[i].slowed) : NULL;
+        if (slowed) report->strands_slowed += *slowed;
+        free(slowed);
+    }
     for (uint32_t i = 0; has_segments(state) && i < state->hair->batch_count; ++i) {
         uint32_t count = state->hair->batches[i].strand_count;
         Float4 *tips = gpu_buffer_read(&state->batches[i].tips);

@@ -65,10 +65,10 @@ static void define(ShaderDefine *defines, const SectionParams *params)
 
 typedef struct Balance {
     RestBatch *batch;
-    RestJoint *joints;             // [parts][vertices]
-    double (*bend)[2];             // [vertices]: B/(rho A0), area over that of the mean radius
-    double *gravity_share;         // [vertices]
-    double (*sums)[2];             // [parts]: weight, held
+    RestJoint *joints;     // [parts][vertices]
+    double (*bend)[2];     // [vertices]: B/(rho A0), area over that of the mean radius
+    double *gravity_share; // [vertices]
+    double (*sums)[2];     // [parts]: weight, held
     int parts;
 } Balance;
 
@@ -92,8 +92,8 @@ static void fill_joint(const Balance *balance, const float (*rest)[4], uint32_t 
         joint->weight[k] = 0.5 * (l + beyond) * balance->bend[j][1] * balance->gravity_share[j] *
                            (double)batch->gravity[k];
     }
-    double size = sqrt(joint->t[0] * joint->t[0] + joint->t[1] * joint->t[1] +
-                       joint->t[2] * joint->t[2]);
+    double size =
+        sqrt(joint->t[0] * joint->t[0] + joint->t[1] * joint->t[1] + joint->t[2] * joint->t[2]);
     for (int k = 0; k < 3; ++k) joint->t[k] /= size;
 }
 
@@ -105,9 +105,7 @@ static void balance_strand(const Balance *balance, int part, uint32_t slot)
     RestJoint *joints = balance->joints + (size_t)part * hair->vertex_count;
     for (int j = 1; j <= n; ++j)
         fill_joint(balance, batch->rest, slot, (uint32_t)j + batch->lead, &joints[j]);
-    double energy =
-        rest_shape_solve(joints, n, 1 / (1 + (double)batch->params->poisson));
-    batch->state[hair_address(hair, slot, batch->lead)][3] = (float)energy;
+    rest_shape_solve(joints, n, 1 / (1 + (double)batch->params->poisson));
     for (int j = 1; j <= n; ++j) {
         size_t at = hair_address(hair, slot, (uint32_t)j + batch->lead);
         double weight = 0, held = 0;
@@ -176,6 +174,7 @@ static const SolverRecipe FIBRE = {
     .fill = fill,
     .define = define,
     .along = along,
+    .counts = true,
     .balance = balance_groom,
 };
 
@@ -189,6 +188,7 @@ static const SolverRecipe PARTICLES = {
     .fill = fill,
     .define = define,
     .along = along,
+    .counts = true,
 };
 
 const SolverType SOLVER_ROD = {

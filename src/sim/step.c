@@ -191,7 +191,8 @@ static Result build(StepPrograms *programs, uint32_t batch, uint32_t vertices,
     return shader_build_compute(&programs->programs[batch], options->shader, defines, error);
 }
 
-// CPU drivers end the loops of a lane after 65,535 turns, which most_vertices allows for one strand.
+// CPU drivers end the loops of a lane after 65,535 turns, which most_vertices allows for one
+// strand.
 static uint32_t strands_in_memory(const StepSizes *sizes, const Hair *hair,
                                   const StepProgramsOptions *options)
 {
@@ -222,9 +223,8 @@ Result step_programs_create(StepPrograms *programs, const Gpu *gpu, const Hair *
         programs->leads[i] = lead_of(&hair->batches[i], options);
     if (result == RESULT_OK) {
         programs->in_registers = fits_registers(hair, programs->leads, sizes->most_in_registers);
-        programs->strands_per_lane = programs->in_registers
-                                         ? sizes->strands
-                                         : strands_in_memory(sizes, hair, options);
+        programs->strands_per_lane =
+            programs->in_registers ? sizes->strands : strands_in_memory(sizes, hair, options);
     }
     for (uint32_t i = 0; i < hair->batch_count && result == RESULT_OK; ++i)
         if (hair->batches[i].held < hair->batches[i].vertex_count)

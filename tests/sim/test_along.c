@@ -78,8 +78,7 @@ static void check_each(const char *algo, const char *variant)
         {"style", "0.6", "style-stiffness", "150", "drag", "4:0", "gravity-share", "0.7", NULL},
         {"style", "0.6", "style-stiffness", "150", "drag", "2", "gravity-share", "0.4:1", NULL},
     };
-    static const char *const styles[] = {"chain",     "rod",  "hybrid",
-                                         "emulation", "rope", "dftl"};
+    static const char *const styles[] = {"chain", "rod", "hybrid", "emulation", "rope", "dftl"};
     bool published = strcmp(variant, "thesis") == 0 || strcmp(variant, "tressfx4") == 0;
     bool stands = published || strcmp(algo, "none") == 0, springs = false;
     for (size_t i = 0; i < sizeof styles / sizeof *styles; ++i)

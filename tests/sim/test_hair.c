@@ -115,11 +115,23 @@ static void hair_larger_than_a_buffer_is_split_never_cut(void **state)
 static GLuint build(const char *shader)
 {
     GLuint program;
-    const ShaderDefine defines[] = {
-        {"GROUP_SIZE", 8}, {"STRANDS", 1},  {"IN_REGISTERS", 0}, {"VERTICES", 4}, {"SHELTER", 0},
-        {"LEAD", 0},       {"THESIS", 0},   {"DRAGGED", 0},      {"STYLED", 1},   {"JOINTS", 1},
-        {"BULLET", 0},     {"IMPLICIT", 1}, {"TRESSFX4", 0},     {"GUARDED", 1},
-        {"EQUAL", 0},      {"BALANCED", 1}, {0}};
+    const ShaderDefine defines[] = {{"GROUP_SIZE", 8},
+                                    {"STRANDS", 1},
+                                    {"IN_REGISTERS", 0},
+                                    {"VERTICES", 4},
+                                    {"SHELTER", 0},
+                                    {"LEAD", 0},
+                                    {"THESIS", 0},
+                                    {"DRAGGED", 0},
+                                    {"STYLED", 1},
+                                    {"JOINTS", 1},
+                                    {"BULLET", 0},
+                                    {"IMPLICIT", 1},
+                                    {"TRESSFX4", 0},
+                                    {"GUARDED", 1},
+                                    {"EQUAL", 0},
+                                    {"BALANCED", 1},
+                                    {0}};
     assert_int_equal(shader_build_compute(&program, shader, defines, NULL), RESULT_OK);
     return program;
 }

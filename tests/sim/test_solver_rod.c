@@ -35,9 +35,9 @@ static void it_equals_its_double_precision_twin(void **state)
 {
     (void)state;
     static const TwinCase cases[] = {
-        {2, 60, 1, 0.5, 100, 3 * 4.5e-6, fibre},   {8, 60, 1, 0.5, 100, 3 * 3.1e-6, fibre},
-        {16, 60, 4, 0.5, 100, 3 * 4.4e-7, fibre},    {16, 240, 4, 0.5, 100, 3 * 3.1e-6, fibre},
-        {32, 60, 4, 0.5, 60, 3 * 4.4e-7, fibre},     {16, 60, 4, 0.5, 100, 3 * 4.4e-7, sprung},
+        {2, 60, 1, 0.5, 100, 3 * 4.5e-6, fibre},  {8, 60, 1, 0.5, 100, 3 * 3.1e-6, fibre},
+        {16, 60, 4, 0.5, 100, 3 * 4.4e-7, fibre}, {16, 240, 4, 0.5, 100, 3 * 3.1e-6, fibre},
+        {32, 60, 4, 0.5, 60, 3 * 4.4e-7, fibre},  {16, 60, 4, 0.5, 100, 3 * 4.4e-7, sprung},
         {16, 60, 4, 0.5, 60, 3 * 1.1e-6, soft},
     };
     static const TwinCase uneven[] = {{8, 60, 1, 0.5, 60, 3 * 1.9e-6, fibre},
@@ -60,8 +60,7 @@ static void forces_are_the_gradient_of_the_energy(void **state)
     twin_start(&strand, N, (const Vec *)q);
     for (int j = 1; j < N; ++j) {
         Vec way;
-        for (int k = 0; k < 3; ++k)
-            way[k] = q[j][k] - q[j - 1][k] + 0.01 * sin(7 * j + 3 * k);
+        for (int k = 0; k < 3; ++k) way[k] = q[j][k] - q[j - 1][k] + 0.01 * sin(7 * j + 3 * k);
         vec_add_scaled(strand.x[j - 1], strand.length[j] / vec_norm(way), way, strand.x[j]);
     }
     reference_rod_untwist(&strand, &head, &params, 200);

@@ -74,7 +74,8 @@ static void find_tensions(const TwinStrand *strand, const Vec *r, const Vec *x, 
     reference_solve_lengths(r, strand->n, right, lambda);
 }
 
-static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step, Vec *x)
+static void pull_implicitly(const TwinStrand *strand, const Vec *v_old, const TwinStep *step,
+                            Vec *x)
 {
     const double least = 0.25, stiff_from = 8;
     const int n = strand->n;

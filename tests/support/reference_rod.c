@@ -213,7 +213,8 @@ double reference_rod_energy(const TwinStrand *strand, const HeadPose *head,
     if (!gradient) return find_energy(strand, strand->twist, &joints);
     find_gradient(strand, &joints, by, G);
     for (int j = 1; j < strand->n; ++j)
-        for (int i = 0; i < 3; ++i) gradient[j][i] = by[j][i] - (j + 1 < strand->n ? by[j + 1][i] : 0);
+        for (int i = 0; i < 3; ++i)
+            gradient[j][i] = by[j][i] - (j + 1 < strand->n ? by[j + 1][i] : 0);
     return find_energy(strand, strand->twist, &joints);
 }
 
@@ -230,8 +231,9 @@ void reference_rod_untwist(TwinStrand *strand, const HeadPose *head, const Secti
         find_frames(strand, strand->twist, axes, &joints);
         find_gradient(strand, &joints, by, G);
         for (int j = 1; j < strand->n; ++j)
-            strand->twist[j] += 0.2 * (-vec_dot(G[j], joints.t[j]) / (joints.ratio * joints.beta[j]) -
-                                       strand->twist[j]);
+            strand->twist[j] +=
+                0.2 *
+                (-vec_dot(G[j], joints.t[j]) / (joints.ratio * joints.beta[j]) - strand->twist[j]);
     }
 }
 
@@ -289,8 +291,8 @@ static void find_goals(RodStep *rod, const TwinStrand *strand)
     Matrix axes;
     for (int j = 1; j < rod->n; ++j)
         for (int i = 0; i < 3; ++i)
-            rod->joints.r[j][i] = rod->q[j][i] - rod->q[j - 1][i] +
-                                  rod->share * (rod->u[j][i] - rod->u[j - 1][i]);
+            rod->joints.r[j][i] =
+                rod->q[j][i] - rod->q[j - 1][i] + rod->share * (rod->u[j][i] - rod->u[j - 1][i]);
     clamp_axes(&rod->step->head_old, &rod->step->head, rod->share, axes);
     find_frames(strand, rod->twist, axes, &rod->joints);
 }
@@ -468,6 +470,7 @@ void reference_rod_step(TwinStrand *strand, const TwinStep *step, const SectionP
     static RodStep rod; // large
     Vec turn, push;
     double worked, kinetic = 0, length = 0;
+    double before = reference_rod_energy(strand, &step->head_old, params, NULL);
     open(&rod, strand, step, params);
     predict(&rod, strand);
     for (int round = 0; round < 3; ++round) {
@@ -492,7 +495,7 @@ void reference_rod_step(TwinStrand *strand, const TwinStep *step, const SectionP
     }
     memcpy(strand->twist, rod.twist, sizeof rod.twist);
     double energy = reference_rod_energy(strand, &step->head, params, NULL);
-    double gained = energy - strand->energy + worked;
+    double gained = strand->gained + energy - before + worked;
     vec_add_scaled(step->gravity, step->drag, step->wind, push);
     double speed = 1e-6 * length / step->dt;
     double over = gained - length * (0.005 * length * vec_norm(push) / 2 + speed * speed / 2);
@@ -503,5 +506,5 @@ void reference_rod_step(TwinStrand *strand, const TwinStep *step, const SectionP
                 strand->v[j][i] = rod.root_after[i] + kept * (strand->v[j][i] - rod.root_after[i]);
         gained -= paid;
     }
-    strand->energy = energy - fmax(gained, 0);
+    strand->gained = fmax(gained, 0);
 }

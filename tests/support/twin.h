@@ -17,8 +17,7 @@ typedef struct TwinStrand {
     double length[TWIN_MAX];
     double carried[TWIN_MAX]; // of dftl: see reference_dftl.c
     double twist[TWIN_MAX];   // rad, of rod's joints
-    double energy;            // m^3/s^2, of rod's joints, less what it has gained and not paid
-    double gained;            // m^2/s^2: energy from constraints of chain and dftl, not yet removed
+    double gained;            // energy that chain, dftl and rod have gained and not yet removed
     double paid;              // share of its velocities that dftl's next step removes
 } TwinStrand;
 
