@@ -177,6 +177,7 @@ Result figures_measure(Figures *figures, const Strands *strands, const Surface *
     *figures = (Figures){.strands = strands->strand_count, .vertices = strands->vertex_count};
     double gravity;
     TRY(fibre_default(&figures->fibre, &gravity, error));
+    fibre_fill(&figures->fibre, &strands->fibre);
     figures->gravito_bending_length = fibre_gravito_bending_length(&figures->fibre, gravity);
     strands_bounds(strands, figures->low, figures->high);
     double *values = malloc(((size_t)strands->vertex_count + 1) * sizeof *values);

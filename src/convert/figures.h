@@ -39,7 +39,7 @@ typedef struct Figures {
     uint32_t strands, vertices;
     Figure figures[FIGURE_KINDS];
     double total_length;           // m
-    Fibre fibre;                   // the default material
+    Fibre fibre;                   // the file's material, and the default for what it does not say
     double gravito_bending_length; // m, L_gb of this fibre under default gravity (fibre.h)
     float low[3], high[3];         // box of all vertices, m
     SizeCount *sizes;              // [size_count], owned, ascending

@@ -3,6 +3,25 @@
 
 #include <math.h>
 
+bool fibre_is_known(const Fibre *fibre)
+{
+    return fibre->youngs_modulus > 0 || fibre->density > 0 || fibre->radius > 0;
+}
+
+bool fibre_equals(const Fibre *a, const Fibre *b)
+{
+    return a->youngs_modulus == b->youngs_modulus && a->poisson == b->poisson &&
+           a->density == b->density && a->radius == b->radius;
+}
+
+void fibre_fill(Fibre *fibre, const Fibre *from)
+{
+    if (from->youngs_modulus > 0) fibre->youngs_modulus = from->youngs_modulus;
+    if (from->youngs_modulus > 0 && from->poisson > -1) fibre->poisson = from->poisson;
+    if (from->density > 0) fibre->density = from->density;
+    if (from->radius > 0) fibre->radius = from->radius;
+}
+
 Fibre fibre_of(const SectionParams *params)
 {
     return (Fibre){.youngs_modulus = (double)params->youngs_modulus * 1e9,

@@ -4,13 +4,21 @@
 
 #include "base/params.h"
 
-// All 0 if it is unknown.
+// A zeroed struct is unknown, and so is a member that is 0; Poisson's ratio is unknown without a
+// modulus, or if it is -1 or less.
 typedef struct Fibre {
     double youngs_modulus; // Pa
     double poisson;        // Poisson's ratio
     double density;        // kg/m3
     double radius;         // m, the physical one
 } Fibre;
+
+// Whether any member is known; whether both are equal.
+bool fibre_is_known(const Fibre *fibre);
+bool fibre_equals(const Fibre *a, const Fibre *b);
+
+// Replaces the members that are known in `from`.
+void fibre_fill(Fibre *fibre, const Fibre *from);
 
 // The material that the parameters of the solver rod give; of profiles along the strand the mean.
 Fibre fibre_of(const SectionParams *params);
