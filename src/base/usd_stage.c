@@ -8,6 +8,39 @@ enum { DEEPEST = 64 };
 
 const char USD_FLATTEN[] = "expected one layer: usdcat --flatten FILE -o flat.usda";
 
+// --- Paths, as hashes: 64-bit FNV-1a (Fowler, Noll, Vo) of "/Hair/Fibre".
+
+static const uint64_t NO_PATH = 0xcbf29ce484222325u;
+
+static uint64_t add_character(uint64_t path, char c)
+{
+    return (path ^ (uint8_t)c) * 0x100000001b3u;
+}
+
+static uint64_t add_name(uint64_t path, const char *name)
+{
+    path = add_character(path, '/');
+    for (; *name; ++name) path = add_character(path, *name);
+    return path;
+}
+
+// Reads the first path of a relationship, </A/B> or [</A/B>, ...]; 0 if there is none.
+static uint64_t read_path(Reader *reader)
+{
+    Reader before = *reader;
+    uint64_t path = NO_PATH;
+    usd_text_take(reader, '[');
+    bool found = usd_text_peek(reader, false) == '<';
+    if (found) usd_text_step(reader);
+    while (found && usd_text_here(reader) && usd_text_here(reader) != '>') {
+        path = add_character(path, usd_text_here(reader));
+        usd_text_step(reader);
+    }
+    if (reader_ok(reader)) *reader = before;
+    usd_text_skip_value(reader);
+    return found ? path : 0;
+}
+
 // --- Properties.
 
 static bool is_shown(const char *name, const char *word)
@@ -30,6 +63,10 @@ static void read_property_value(UsdStage *stage, int prim, void *object, const c
         usd_transform_read_op(&stage->prim[prim].transform, reader, word, samples);
     } else if (strcmp(name, "xformOpOrder") == 0) {
         usd_transform_read_order(&stage->prim[prim].transform, reader);
+    } else if (strcmp(name, "material:binding:physics") == 0) {
+        stage->prim[prim].bound[USD_FOR_PHYSICS] = read_path(reader);
+    } else if (strcmp(name, "material:binding") == 0) {
+        stage->prim[prim].bound[USD_FOR_ALL] = read_path(reader);
     } else if ((strcmp(name, "visibility") == 0 || strcmp(name, "purpose") == 0) &&
                usd_text_peek(reader, false) == '"') {
         usd_text_read_string(reader, word);
@@ -182,7 +219,7 @@ static int add_prim(UsdStage *stage, int parent)
 static void read_prim(UsdStage *stage, const char *specifier, int parent, int depth)
 {
     Reader *reader = stage->reader;
-    char type[USD_WORD_SIZE] = "", name[USD_WORD_SIZE];
+    char type[USD_WORD_SIZE] = "", name[USD_WORD_SIZE] = "";
     if (depth > DEEPEST) reader_fail(reader, "prims are nested more than %d deep", DEEPEST);
     int prim = add_prim(stage, parent);
     if (prim < 0) return;
@@ -193,6 +230,7 @@ static void read_prim(UsdStage *stage, const char *specifier, int parent, int de
         usd_text_read_string(reader, name);
     else
         reader_fail(reader, "expected a prim's name");
+    stage->prim[prim].path = add_name(parent < 0 ? NO_PATH : stage->prim[parent].path, name);
     stage->prim[prim].instancer = strcmp(type, "PointInstancer") == 0;
     if (usd_text_peek(reader, false) == '(') read_metadata(stage, prim, object);
     if (reader_ok(reader)) read_body(stage, prim, object, depth);
@@ -213,6 +251,8 @@ static void read_layer_value(UsdStage *stage, const char *name)
         *rate = (double)usd_text_read_float(reader);
     } else if (strcmp(name, "metersPerUnit") == 0) {
         stage->unit = usd_text_read_float(reader);
+    } else if (strcmp(name, "kilogramsPerUnit") == 0) {
+        stage->mass_unit = usd_text_read_float(reader);
     } else if (strcmp(name, "upAxis") == 0 && usd_text_peek(reader, false) == '"') {
         usd_text_read_string(reader, word);
         stage->up_z = strcmp(word, "Z") == 0;
@@ -263,7 +303,8 @@ bool usd_stage_matches(const Bytes *bytes)
 Result usd_stage_read(UsdStage *stage, Reader *reader, const UsdSchema *schema, void *to)
 {
     *stage =
-        (UsdStage){.reader = reader, .schema = schema, .to = to, .unit = 0.01f}; // USD's default
+        // USD's defaults
+        (UsdStage){.reader = reader, .schema = schema, .to = to, .unit = 0.01f, .mass_unit = 1};
     read_layer(stage);
     read_prims(stage);
     if (reader->at < reader->size) reader_fail(reader, "a zero byte: expected text");
@@ -305,6 +346,14 @@ bool usd_stage_instances(const UsdStage *stage, int prim)
     for (int p = prim; p >= 0; p = stage->prim[p].parent)
         instancer = instancer || stage->prim[p].instancer;
     return instancer;
+}
+
+uint64_t usd_stage_find_material(const UsdStage *stage, int prim)
+{
+    for (int purpose = 0; purpose < USD_PURPOSES; ++purpose)
+        for (int p = prim; p >= 0; p = stage->prim[p].parent)
+            if (stage->prim[p].bound[purpose]) return stage->prim[p].bound[purpose];
+    return 0;
 }
 
 uint32_t usd_stage_count_idle(const UsdStage *stage)

@@ -19,10 +19,15 @@ typedef struct UsdWorld {
     bool still; // it is the same at all times
 } UsdWorld;
 
+// Purposes of materials, the more specific first.
+typedef enum UsdPurpose { USD_FOR_PHYSICS, USD_FOR_ALL, USD_PURPOSES } UsdPurpose;
+
 typedef struct UsdPrim {
     int parent; // -1: none
     UsdTransform transform;
-    UsdWorld *world; // NULL: not yet asked for
+    UsdWorld *world;              // NULL: not yet asked for
+    uint64_t path;                // hash of its path
+    uint64_t bound[USD_PURPOSES]; // hashes of the paths of its materials; 0: none
     bool hidden, abstract, instancer;
     bool timed; // usd_stage_add_times has its times
 } UsdPrim;
@@ -49,7 +54,8 @@ typedef struct UsdStage {
     void *to;
     UsdPrim *prim; // [prim_count]
     int prim_count;
-    float unit; // m
+    float unit;      // m
+    float mass_unit; // kg
     bool up_z;
     double codes_per_second, frames_per_second; // 0 if the file does not say
 } UsdStage;
@@ -66,6 +72,10 @@ double usd_stage_rate(const UsdStage *stage);
 // Whether the prim or a parent is hidden, or belongs to a PointInstancer.
 bool usd_stage_hides(const UsdStage *stage, int prim);
 bool usd_stage_instances(const UsdStage *stage, int prim);
+
+// The hash of the path of the material for physics: that bound to the prim or its nearest parent
+// for this purpose, otherwise for all purposes; 0: none. Compare it with UsdPrim.path.
+uint64_t usd_stage_find_material(const UsdStage *stage, int prim);
 
 // The number of transforms without effect, because xformOpOrder is missing.
 uint32_t usd_stage_count_idle(const UsdStage *stage);

@@ -18,6 +18,8 @@ static const struct {
     {"segment", "m", "segment, m"},
     {"turn", "deg", "turn, deg"},
     {"curvature", "1/m", "curvature, 1/m"},
+    {"gamma", "", "Gamma"},
+    {"curvature_l_gb", "", "curvature * L_gb"},
     {"root_spacing", "m", "root_spacing, m"},
     {"depth_inside", "mm", "depth_inside, mm"},
 };
@@ -38,7 +40,13 @@ static double angle(const Double3 a, const Double3 b)
     return atan2(double3_length(c), double3_dot(a, b));
 }
 
-static size_t collect_strands(const Strands *strands, FigureKind kind, double *values)
+static bool is_of_strands(FigureKind kind)
+{
+    return kind <= FIGURE_REACH || kind == FIGURE_GAMMA;
+}
+
+// `l_gb`: the gravito-bending length.
+static size_t collect_strands(const Strands *strands, FigureKind kind, double l_gb, double *values)
 {
     for (uint32_t s = 0; s < strands->strand_count; s++) {
         Double3 reach;
@@ -47,12 +55,13 @@ static size_t collect_strands(const Strands *strands, FigureKind kind, double *v
                  reach);
         values[s] = kind == FIGURE_SIZE     ? strands_size(strands, s)
                     : kind == FIGURE_LENGTH ? length
+                    : kind == FIGURE_GAMMA  ? pow(length / l_gb, 3)
                                             : double3_length(reach) / length;
     }
     return strands->strand_count;
 }
 
-static size_t collect_vertices(const Strands *strands, FigureKind kind, double *values)
+static size_t collect_vertices(const Strands *strands, FigureKind kind, double l_gb, double *values)
 {
     static const double deg = 57.29577951308232;
     size_t count = 0;
@@ -66,7 +75,9 @@ static size_t collect_vertices(const Strands *strands, FigureKind kind, double *
                 subtract(strands->position[v - 1], strands->position[v], before);
                 double turn = angle(before, after),
                        mean = (double3_length(before) + double3_length(after)) / 2;
-                values[count++] = kind == FIGURE_TURN ? deg * turn : turn / mean;
+                values[count++] = kind == FIGURE_TURN   ? deg * turn
+                                  : kind == FIGURE_CURL ? turn / mean * l_gb
+                                                        : turn / mean;
             }
         }
     return count;
@@ -145,15 +156,16 @@ static Result measure_kind(Figures *figures, const Strands *strands, const Surfa
                            FigureKind kind, double *values, Error *error)
 {
     size_t count = 0;
+    double l_gb = figures->gravito_bending_length;
     Result result = RESULT_OK;
-    if (kind <= FIGURE_REACH)
-        count = collect_strands(strands, kind, values);
+    if (is_of_strands(kind))
+        count = collect_strands(strands, kind, l_gb, values);
     else if (kind == FIGURE_ROOTS)
         result = collect_roots(strands, values, &count, error);
     else if (kind == FIGURE_DEPTH)
         result = collect_depths(figures, strands, surface, values, &count, error);
     else
-        count = collect_vertices(strands, kind, values);
+        count = collect_vertices(strands, kind, l_gb, values);
     figures->figures[kind] = summarise(values, count);
     if (kind == FIGURE_SIZE) result = count_sizes(figures, values, count, error);
     return result;
@@ -163,6 +175,10 @@ Result figures_measure(Figures *figures, const Strands *strands, const Surface *
                        Error *error)
 {
     *figures = (Figures){.strands = strands->strand_count, .vertices = strands->vertex_count};
+    double gravity;
+    TRY(fibre_default(&figures->fibre, &gravity, error));
+    fibre_fill(&figures->fibre, &strands->fibre);
+    figures->gravito_bending_length = fibre_gravito_bending_length(&figures->fibre, gravity);
     strands_bounds(strands, figures->low, figures->high);
     double *values = malloc(((size_t)strands->vertex_count + 1) * sizeof *values);
     Result result = values ? RESULT_OK
@@ -221,6 +237,9 @@ void figures_print(const Figures *figures, FILE *stream)
         fprintf(stream, "%-18s %11.5g %11.5g %11.5g %11.5g %11.5g %11.5g\n", KINDS[kind].title,
                 f->min, f->low, f->median, f->high, f->max, f->mean);
     }
+    fprintf(stream, "\nL_gb %.4g m (%.4g GPa, radius %.4g um, %.4g kg/m3)\n",
+            figures->gravito_bending_length, figures->fibre.youngs_modulus / 1e9,
+            figures->fibre.radius * 1e6, figures->fibre.density);
     if (figures->has_mesh)
         fprintf(stream, "\ninside the mesh: %llu of %u vertices, of %u of %u strands\n",
                 (unsigned long long)figures->figures[FIGURE_DEPTH].count, figures->vertices,
@@ -236,9 +255,10 @@ static json_t *vector_to_json(const float vector[3])
 json_t *figures_to_json(const Figures *figures)
 {
     json_t *object =
-        json_pack("{si si sf so so}", "strands", figures->strands, "vertices", figures->vertices,
-                  "total_length_m", figures->total_length, "low_m", vector_to_json(figures->low),
-                  "high_m", vector_to_json(figures->high));
+        json_pack("{si si sf sf so so}", "strands", figures->strands, "vertices", figures->vertices,
+                  "total_length_m", figures->total_length, "gravito_bending_length_m",
+                  figures->gravito_bending_length, "low_m", vector_to_json(figures->low), "high_m",
+                  vector_to_json(figures->high));
     for (int kind = 0; kind < FIGURE_KINDS; ++kind) {
         const Figure *f = &figures->figures[kind];
         if (kind == FIGURE_DEPTH && !figures->has_mesh) continue;

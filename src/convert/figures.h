@@ -2,6 +2,7 @@
 // Statistics of strands: measured, printed and as JSON.
 #pragma once
 
+#include "strands/fibre.h"
 #include "strands/strands_mesh.h"
 
 #include <jansson.h>
@@ -22,6 +23,8 @@ typedef enum FigureKind {
     FIGURE_TURN,      // degrees between successive segments, at inner vertices
     FIGURE_CURVATURE, // 1/m, at inner vertices: the turn in radians over the mean length of the two
                       // segments
+    FIGURE_GAMMA,     // (length/L_gb)^3, of strands, see gravito_bending_length
+    FIGURE_CURL,      // curvature times L_gb, at inner vertices
     FIGURE_ROOTS,     // m, from a root to the nearest other root
     FIGURE_DEPTH,     // mm, of vertices inside a mesh, except roots
     FIGURE_KINDS
@@ -35,9 +38,11 @@ typedef struct SizeCount {
 typedef struct Figures {
     uint32_t strands, vertices;
     Figure figures[FIGURE_KINDS];
-    double total_length;   // m
-    float low[3], high[3]; // box of all vertices, m
-    SizeCount *sizes;      // [size_count], owned, ascending
+    double total_length;           // m
+    Fibre fibre;                   // the file's material, and the default for what it does not say
+    double gravito_bending_length; // m, L_gb of this fibre under default gravity (fibre.h)
+    float low[3], high[3];         // box of all vertices, m
+    SizeCount *sizes;              // [size_count], owned, ascending
     uint32_t size_count;
     bool has_mesh;
     uint32_t strands_inside; // number of strands with a vertex inside the mesh

@@ -142,6 +142,41 @@ static Result describe(Exporter *exporter, const Strands *sections, int frame_co
                             &exporter->strands, &exporter->options, error);
 }
 
+// --- The material of fibres.
+
+// The material that the section was simulated with, otherwise that of its file; zero if it varies
+// along strands or over time, which files cannot store.
+static Fibre find_fibre(const Section *section, const Strands *strands)
+{
+    static const char *const names[] = {"youngs_modulus", "poisson", "hair_density", "hair_radius"};
+    const SectionParams *params = &section->params;
+    if (!section_is_elastic(params)) return strands->fibre;
+    bool varies = params->youngs_modulus_along.count || params->hair_radius_along.count;
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        varies = varies || section_tracks_has(&section->tracks, params_find(names[i]));
+    const Fibre none = {0};
+    return varies ? none : fibre_of(params);
+}
+
+// Sets the material if all sections have the same; otherwise it is lost.
+static void set_fibre(Exporter *exporter, const Strands *sections, uint32_t count)
+{
+    const Section *all = exporter->simulation->scene->sections;
+    bool same = true, any = false;
+    Fibre first = count ? find_fibre(&all[0], &sections[0]) : (Fibre){0};
+    for (uint32_t i = 0; i < count; ++i) {
+        Fibre fibre = find_fibre(&all[i], &sections[i]);
+        same = same && fibre_equals(&fibre, &first);
+        any = any || section_is_elastic(&all[i].params);
+    }
+    exporter->strands.fibre = same ? first : (Fibre){0};
+    bool stores = FORMAT_TABLE[exporter->kind]->features & STRANDS_HAS_FIBRE;
+    if (stores && any && !fibre_is_known(&exporter->strands.fibre))
+        exporter->lost |= STRANDS_HAS_FIBRE;
+}
+
+// --- Preparing.
+
 // Finds features of the hair that some or all sections have and the file format cannot store.
 static void find_lost(Exporter *exporter, const Strands *sections, uint32_t count)
 {
@@ -181,6 +216,7 @@ static Result prepare(Exporter *exporter, const char *text, const Strands *secti
     if (count > 1) TRY(strands_group_sets(&exporter->strands, sections, count, false, error));
     exporter->kind = format_choose(text, &exporter->strands);
     find_lost(exporter, sections, count);
+    set_fibre(exporter, sections, count);
     if (!frames_file_has_look(exporter->kind) && exporter->kind != FORMAT_NPZ) return RESULT_OK;
     return describe(exporter, sections, frame_count, error);
 }

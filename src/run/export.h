@@ -35,7 +35,8 @@ Result exporter_check(const char *text, int frame_count, Error *error);
 // `text`: as for format_target. Files contain the guides (with export_followers: also the
 // followers) of all sections in the order in which they were read, in metres with y up, with the
 // texture coordinates, colours and other attributes that all sections have; several sections become
-// groups. USD and Alembic files also contain the sections' widths and colours. They hold all frames
+// groups. USD and Alembic files also contain the sections' widths and colours, USD files the
+// material of their fibres if all sections have the same. They hold all frames
 // in one file, as does .npz, which keeps them in memory until the end. `frame_count`: number of
 // frames to come. All arguments must outlive the exporter. Errors of exporter_check, RESULT_FAILED
 // if the file can't be created or memory is short. A zeroed struct may be destroyed; destroying

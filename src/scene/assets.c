@@ -56,6 +56,34 @@ static void print_look(const Strands *strands, const Section *section, FILE *mes
         fprintf(messages, "%s: the file's %s\n", quote(section->file).text, look);
 }
 
+// Sets a parameter that neither scene nor command line set, if the value is in its range.
+static void set_default(Section *section, const char *name, float *to, double value)
+{
+    const ParamInfo *info = params_find(name);
+    if (section->origin[info - PARAM_TABLE] == ORIGIN_DEFAULT && value >= info->minimum &&
+        value <= info->maximum)
+        *to = (float)value;
+}
+
+// The file's material is the default of elastic strands.
+static void take_fibre(Section *section, const Strands *strands, FILE *messages)
+{
+    SectionParams *params = &section->params;
+    if (!section_is_elastic(params) || !fibre_is_known(&strands->fibre)) return;
+    Fibre fibre = fibre_of(params);
+    fibre_fill(&fibre, &strands->fibre);
+    set_default(section, "youngs_modulus", &params->youngs_modulus, fibre.youngs_modulus / 1e9);
+    set_default(section, "poisson", &params->poisson, fibre.poisson);
+    set_default(section, "hair_density", &params->hair_density, fibre.density);
+    set_default(section, "hair_radius", &params->hair_radius, fibre.radius * 1e6);
+    if (messages)
+        fprintf(messages,
+                "%s: the file has a material: %.4g GPa, Poisson's ratio %.4g, %.4g kg/m3, radius "
+                "%.4g um are used\n",
+                quote(section->file).text, (double)params->youngs_modulus, (double)params->poisson,
+                (double)params->hair_density, (double)params->hair_radius);
+}
+
 static Result pick_group(Strands *strands, const Section *section, Error *error)
 {
     Result result = strands_pick_group(strands, (double)section->params.group.value, error);
@@ -209,8 +237,10 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
     assets->bodies = calloc((size_t)scene->body_count + 1, sizeof *assets->bodies);
     if (!assets->strands || !assets->reports || !assets->meshes || !assets->bodies)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
-    for (uint32_t i = 0; i < scene->section_count; ++i)
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
         TRY(load_section(assets, scene, i, messages, verbose, error));
+        take_fibre(&scene->sections[i], &assets->strands[i], messages);
+    }
     for (uint32_t b = 0; b < scene->body_count; ++b) {
         const BodyLoad load = {.assets = assets,
                                .run = &scene->run,

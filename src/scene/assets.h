@@ -18,8 +18,9 @@ typedef struct Assets {
 } Assets;
 
 // Reads all files that the scene names. A deforming mesh becomes its body's shape and moves its
-// head (SceneBody.head.samples) as long as the assets exist; strands lie on it as at time 0. Prints
-// what was mended and, if `verbose`, guessed units on `messages` (NULL: does not print). Errors of
+// head (SceneBody.head.samples) as long as the assets exist; strands lie on it as at time 0. The
+// material in a hair file becomes the default of elastic sections (section_is_elastic). Prints what
+// was mended and, if `verbose`, guessed units on `messages` (NULL: does not print). Errors of
 // strands_read and mesh_read; the assets may be destroyed after an error.
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);

@@ -5,18 +5,17 @@
 #include "scene/scene.h"
 #include "sim/along.h"
 #include "sim/rest_shape.h"
+#include "strands/fibre.h"
 
 #include "glsl/sim/rod_params.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-// B/(rho A) = E r^2/(4 rho), m^4/s^2.
 static double rod_stiffness(const SectionParams *params)
 {
-    double radius = (double)params->hair_radius * 1e-6;
-    return (double)params->youngs_modulus * 1e9 * radius * radius /
-           (4 * (double)params->hair_density);
+    const Fibre fibre = fibre_of(params);
+    return fibre_stiffness(&fibre);
 }
 
 // Kelvin-Voigt damping of time eta takes bending eta later than the middle of the step: at most

@@ -122,6 +122,7 @@ uint32_t strands_features(const Strands *strands)
     if (strands->both_ends_fixed) features |= STRANDS_HAS_FIXED_ENDS;
     if (strands->strand_group && !is_zero(strands->strand_group, count))
         features |= STRANDS_HAS_GROUP;
+    if (fibre_is_known(&strands->fibre)) features |= STRANDS_HAS_FIBRE;
     return features;
 }
 
@@ -136,7 +137,8 @@ void strands_features_describe(uint32_t features, char *text, size_t size)
                                         "number of followers",
                                         "radius of followers",
                                         "fixed tips",
-                                        "groups"};
+                                        "groups",
+                                        "material of fibres"};
     text[0] = 0;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         size_t used = strlen(text);

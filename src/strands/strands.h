@@ -8,6 +8,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "strands/fibre.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,6 +31,7 @@ typedef struct Strands {
     uint32_t followers;      // per guide, as the file asks for
     float follower_radius;   // metres, largest distance from the guide; 0 if the file has none
     bool both_ends_fixed;    // tips are fixed, too
+    Fibre fibre;             // as the file says, in SI units whatever the unit of positions
     // Unit (m) and axis of positions that were converted for a file by strands_to_unit. Otherwise
     // unit is 0, and positions are in metres with y up.
     double unit;
@@ -87,6 +89,7 @@ enum {
     STRANDS_HAS_FOLLOWER_RADIUS = 128,
     STRANDS_HAS_FIXED_ENDS = 256,
     STRANDS_HAS_GROUP = 512,
+    STRANDS_HAS_FIBRE = 1024,
 };
 
 // Whether no vertex has an opacity below 1.

@@ -168,6 +168,7 @@ Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Err
     other.followers = strands->followers;
     other.follower_radius = strands->follower_radius;
     other.both_ends_fixed = strands->both_ends_fixed;
+    other.fibre = strands->fibre;
     strands_destroy(strands);
     *strands = other;
     return RESULT_OK;
@@ -213,7 +214,7 @@ Result strands_shuffle(Strands *strands, uint32_t seed, Error *error)
 Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *error)
 {
     uint64_t strands = 0, vertices = 0;
-    bool same = count > 0, fixed = count > 0;
+    bool same = count > 0, fixed = count > 0, one_fibre = count > 0;
     *all = (Strands){0};
     for (uint32_t i = 0; i < count; ++i) {
         strands += sets[i].strand_count;
@@ -221,6 +222,7 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
         same = same && sets[i].followers == sets[0].followers &&
                sets[i].follower_radius == sets[0].follower_radius;
         fixed = fixed && sets[i].both_ends_fixed;
+        one_fibre = one_fibre && fibre_equals(&sets[i].fibre, &sets[0].fibre);
     }
     if (strands >= UINT32_MAX || vertices >= UINT32_MAX)
         return error_set(error, RESULT_FAILED,
@@ -236,6 +238,7 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
     all->followers = same ? sets[0].followers : 0;
     all->follower_radius = same ? sets[0].follower_radius : 0.0f;
     all->both_ends_fixed = fixed;
+    if (one_fibre) all->fibre = sets[0].fibre;
     return RESULT_OK;
 }
 

@@ -183,6 +183,9 @@ static void convert(FormatSource *source, double unit, bool up_z)
         strands->vertex_thickness[v] =
             (float)(strands->vertex_thickness[v] * of_thickness * fabs(scale));
     strands->follower_radius = (float)(strands->follower_radius * unit * fabs(scale));
+    strands->fibre.youngs_modulus /= unit; // a mass per length and square time
+    strands->fibre.density /= unit * unit * unit;
+    strands->fibre.radius *= unit;
 }
 
 // --- Reading.

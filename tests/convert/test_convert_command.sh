@@ -174,6 +174,14 @@ run 3 "$work/cloud.ply" --points-per-strand 49; says "14400 points cannot be div
 run 2 $curls --points-per-strand 48; says "has no effect"; one_line
 run 2 $curls --array x; says "has no effect"; one_line
 
+claim "statistics compare weight and curl with the stiffness of real hair"
+# L_gb = (3.5e9 * 35e-6^2 / (4 * 1300 * 9.81))^(1/3) = 0.0438037 m, Gamma = (0.2/L_gb)^3 = 95.1827, and a right angle
+# between segments of 0.1 m is a curvature of 10 pi/2 1/m: times L_gb 0.688067.
+printf 'v %s\n' '0 0 0' '0 0.1 0' '0.1 0.1 0' >"$work/bent.obj"; echo 'l 1 2 3' >>"$work/bent.obj"
+run 0 "$work/bent.obj" --unit m --stats --json "$work/x.json"; says "L_gb 0.0438 m (3.5 GPa, radius 35 um, 1300 kg/m3)"
+says "Gamma                   95.183      95.183"; says "curvature * L_gb       0.68807     0.68807"
+in_file "$work/x.json" '"gravito_bending_length_m": 0.04380'; in_file "$work/x.json" '"gamma": {'; in_file "$work/x.json" '"curvature_l_gb": {'
+
 claim "figures go to JSON"
 run 0 "$work/dirty.tfx" --unit m --json "$work/x.json"; silent out
 for part in '"kind": "not_finite"' '"first_place": 9' '"curvature": {' '"root_spacing": {' '"sizes": [' '"unit_m": 1'; do

@@ -382,4 +382,18 @@ says_color() { if grep -a displayColor "$work/few.usda" | grep -qF "$1"; then go
 # red by paint.c's formula: 0.0095 + 0.435 exp(-3.35 sigma^0.59), sigma = 1.3 x 0.419
 says_color "(0.0513"
 
+claim "hair with a material goes to USD and comes back with it"
+rod="--algo rod --frames 1 --size 32x24 --preroll 0"
+# shellcheck disable=SC2086
+{
+    run 0 "$work/few.tfx" $rod -q --youngs-modulus 2.5 --hair-radius 40 --poisson 0.3 --export "$work/rod.usda"; silent err
+    run 0 "$work/rod.usda" $rod --hair-density 1200 --stats "$work/rod.json" --export "$work/again.usda"
+    says "rod.usda: the file has a material: 2.5 GPa, Poisson's ratio 0.3, 1200 kg/m3, radius 40 um are used"
+    for part in '"youngs_modulus": 2.5' '"hair_radius": 40' '"poisson": 0.3' '"hair_density": 1200'; do in_file "$work/rod.json" "$part"; done
+    in_file "$work/again.usda" "physics:density = 1200"; in_file "$work/again.usda" "physics:youngsModulus = 2.5e+09"
+    "$bin/tractrix-convert" "$work/again.usda" --stats >"$work/out"; says "(2.5 GPa, radius 40 um, 1200 kg/m3)"
+    run 0 "$work/rod.usda" $rod --youngs-modulus 4:1 --export "$work/again.usda"; says "--export: USD (.usda) files leave out: material of fibres"
+    if grep -q physics: "$work/again.usda"; then bad "a material that varies is written"; else good; fi
+}
+
 finish

@@ -245,6 +245,88 @@ static void curves_of_other_programs_are_read(void **state)
     strands_destroy(&strands);
 }
 
+static void assert_fibre(const Fibre *fibre, double modulus, double poisson, double density,
+                         double radius)
+{
+    // Numbers are stored as float32, and converted to the file's unit before and after.
+    const double pairs[4][2] = {{fibre->youngs_modulus, modulus},
+                                {fibre->poisson, poisson},
+                                {fibre->density, density},
+                                {fibre->radius, radius}};
+    for (int i = 0; i < 4; ++i)
+        assert_true(fabs(pairs[i][0] - pairs[i][1]) <= 2e-7 * fabs(pairs[i][1]));
+}
+
+static void the_material_of_fibres_is_in_the_files_unit(void **state)
+{
+    Strands strands, back;
+    UsdWriter writer;
+    Error error = {""};
+    make_uneven(&strands);
+    strands.fibre = (Fibre){3.5e9, 0.45, 1300, 35e-6};
+    const char *path = temporary_path(state, "x.usda");
+    const CurvesOptions options = {.metres_per_unit = 0.01};
+    assert_int_equal(usd_writer_open(&writer, path, &strands, &options, NULL), RESULT_OK);
+    usd_writer_add(&writer, 0, (const float(*)[3])strands.position, NULL);
+    assert_int_equal(usd_writer_finish(&writer, NULL), RESULT_OK);
+    Bytes bytes;
+    assert_int_equal(bytes_read_file(&bytes, path, NULL), RESULT_OK);
+    const char *text = (const char *)bytes.data;
+    assert_non_null(strstr(text,
+                           "def BasisCurves \"Hair\" (\n    prepend apiSchemas = "
+                           "[\"MaterialBindingAPI\", \"PhysicsCurvesDeformableSimAPI\"]\n)\n"));
+    assert_non_null(strstr(text, "    rel material:binding:physics = </Hair/Fibre>\n"
+                                 "    float[] physics:thicknesses = [0.007]\n    uniform token "
+                                 "physics:thicknesses:elementType = \"constant\"\n"));
+    assert_non_null(strstr(text, "    def Material \"Fibre\" (\n        prepend apiSchemas = "
+                                 "[\"PhysicsMaterialAPI\", "
+                                 "\"PhysicsCurvesDeformableMaterialAPI\"]\n    )\n    {\n"
+                                 "        float physics:density = 0.0013\n"
+                                 "        float physics:poissonsRatio = 0.45\n"
+                                 "        float physics:youngsModulus = 3.5e+07\n    }\n}\n"));
+    bytes_destroy(&bytes);
+    if (strands_read(&back, path, NULL, NULL, &error) != RESULT_OK) fail_msg("%s", error.text);
+    assert_fibre(&back.fibre, 3.5e9, 0.45, 1300, 35e-6);
+    strands_destroy(&strands);
+    strands_destroy(&back);
+}
+
+// Grams and decimetres; materials that parents bind, the one for physics before the other; numbers
+// that no material has.
+static void materials_of_other_programs_are_read(void **state)
+{
+    (void)state;
+    static const char head[] =
+        "#usda 1.0\n(\n metersPerUnit = 0.1\n kilogramsPerUnit = 0.001\n)\n"
+        "def Xform \"W\" {\n rel material:binding:physics = </W/M/P>\n"
+        "def BasisCurves \"x\"\n{\n rel material:binding = </W/M/Q>\n"
+        "uniform token type = \"linear\"\nint[] curveVertexCounts = [2]\n"
+        "point3f[] points = [(0, 0, 0), (0, 1, 0)]\nfloat[] physics:thicknesses = [0.0008]\n}\n"
+        "def Scope \"M\" {\n"
+        "def Material \"Q\" {\nfloat physics:density = 5\n}\ndef Material \"P\" {\n";
+    static const struct {
+        const char *values;
+        double modulus, poisson, density;
+    } cases[] = {
+        // E: g/(dm s^2) are 0.01 Pa; density: g/dm^3 are kg/m^3
+        {"float physics:youngsModulus = 2e11\nfloat physics:poissonsRatio = 0\n"
+         "float physics:density = 1200\n",
+         2e9, 0, 1200},
+        {"float physics:youngsModulus = 2e11\nfloat physics:poissonsRatio = 0.6\n"
+         "float physics:density = -inf\n",
+         2e9, -1, 0},
+        {"float physics:youngsModulus = None\nfloat physics:density = 1200\n", 0, -1, 1200},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char text[1000];
+        Error error = {""};
+        int size = snprintf(text, sizeof text, "%s%s}\n}\n}\n", head, cases[i].values);
+        Strands strands = read_text(text, (size_t)size, NULL, RESULT_OK, &error);
+        assert_fibre(&strands.fibre, cases[i].modulus, cases[i].poisson, cases[i].density, 40e-6);
+        strands_destroy(&strands);
+    }
+}
+
 #define CURVES(more)                                                                               \
     "#usda 1.0\ndef BasisCurves \"x\"\n{\nuniform token type = \"linear\"\n"                       \
     "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n" more "}\n"
@@ -594,6 +676,8 @@ int main(void)
         TEST(everything_that_strands_have_is_written),
         TEST(what_is_written_is_read_to_the_bit),
         TEST(curves_of_other_programs_are_read),
+        TEST(the_material_of_fibres_is_in_the_files_unit),
+        TEST(materials_of_other_programs_are_read),
         TEST(long_strings_are_skipped_whole),
         TEST(what_would_give_other_hair_is_refused_with_its_line),
         TEST(cubic_curves_become_points_on_them),

@@ -423,7 +423,7 @@ static Result read(FormatSource *source, Reader *reader)
 const Format abc_format = {
     .name = "Alembic (.abc)",
     .suffix = ".abc",
-    .features = UINT32_MAX,
+    .features = ~(uint32_t)STRANDS_HAS_FIBRE,
     .animated = true,
     .match = ogawa_matches,
     .read = read,

@@ -265,6 +265,7 @@ static void set_attributes(Reader *reader, const BasisCurves *curves, Strands *s
     strands->followers = (uint32_t)(curves->followers > 0 ? fminf(curves->followers, 4e9f) : 0);
     strands->follower_radius = curves->follower_radius;
     strands->both_ends_fixed = curves->both_ends_fixed != 0;
+    strands->fibre = curves->fibre;
 }
 
 // --- Indexed attributes.
@@ -424,6 +425,7 @@ void basis_curves_scale(Strands *strands, double m[4][4])
     double scale = cbrt(fabs(volume));
     if (fabs(scale - 1) < 1e-9) return;
     strands->follower_radius = (float)(strands->follower_radius * scale);
+    strands->fibre.radius *= scale;
     for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; ++v)
         strands->vertex_thickness[v] = (float)(strands->vertex_thickness[v] * scale);
 }

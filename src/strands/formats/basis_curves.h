@@ -31,6 +31,7 @@ typedef struct BasisCurves {
     char type[USD_WORD_SIZE], basis[USD_WORD_SIZE], wrap[USD_WORD_SIZE];
     uint32_t line; // line of the prim
     float followers, follower_radius, both_ends_fixed;
+    Fibre fibre; // in the file's units
     int prim;
 } BasisCurves;
 

@@ -547,7 +547,7 @@ static Result write_npy(OutFile *file, const Strands *strands, Error *error)
 const Format npz_format = {
     .name = "numpy arrays (.npz)",
     .suffix = ".npz",
-    .features = UINT32_MAX,
+    .features = ~(uint32_t)STRANDS_HAS_FIBRE,
     .match = match_npz,
     .read = read_npz,
     .write = write_npz,

@@ -17,26 +17,49 @@ static const char *const USD_NAMES[CURVES_ARRAYS] = {
     "primvars:st",       "primvars:st1", "primvars:thickness",    "primvars:mobility",
     "primvars:section"};
 
+// A Material with the attributes of PhysicsCurvesDeformableMaterialAPI, in the file's units.
+typedef struct UsdMaterial {
+    int prim;
+    uint64_t path; // hash
+    Fibre fibre;
+} UsdMaterial;
+
+// What is made of a prim: curves, or a material if they are NULL.
+typedef struct UsdObject {
+    BasisCurves *curves;
+    UsdMaterial material;
+} UsdObject;
+
 typedef struct Usd {
     Reader *reader;
     UsdStage stage;
     FormatWishes wishes;
+    UsdMaterial *materials; // [material_count] of fibres
+    uint32_t material_count;
     BasisCurves *curves; // [curves_count] only curves that have points
     uint32_t curves_count, left_out, other_curves, meshes;
 } Usd;
 
 // --- The schema of curves.
 
-static void *begin_curves(void *to, const char *type, int prim)
+static void *begin_object(void *to, const char *type, int prim)
 {
     Usd *usd = to;
     usd->other_curves += strcmp(type, "NurbsCurves") == 0 || strcmp(type, "HermiteCurves") == 0;
     usd->meshes += strcmp(type, "Mesh") == 0;
-    if (strcmp(type, "BasisCurves") != 0) return NULL;
-    BasisCurves *curves = reader_malloc(usd->reader, 1, sizeof *curves);
-    if (curves)
-        *curves = (BasisCurves){.names = USD_NAMES, .line = usd->reader->line, .prim = prim};
-    return curves;
+    bool is_material = strcmp(type, "Material") == 0;
+    if (strcmp(type, "BasisCurves") != 0 && !is_material) return NULL;
+    UsdObject *object = reader_malloc(usd->reader, 1, sizeof *object);
+    if (object) *object = (UsdObject){.material = {.prim = prim, .fibre.poisson = -1}};
+    if (!object || is_material) return object;
+    object->curves = reader_malloc(usd->reader, 1, sizeof *object->curves);
+    if (object->curves) {
+        *object->curves = (BasisCurves){
+            .names = USD_NAMES, .line = usd->reader->line, .prim = prim, .fibre.poisson = -1};
+        return object;
+    }
+    free(object);
+    return NULL;
 }
 
 // Reads the first sample of an attribute that is not animated.
@@ -52,12 +75,49 @@ static void read_first(Reader *reader, UsdValues *only)
     usd_samples_destroy(&samples);
 }
 
+// Numbers that no material can have count as not given, as in Newton.
+static double number_above(Reader *reader, double least, double most)
+{
+    double number = (double)usd_text_read_float(reader);
+    return number > least && number <= most && isfinite(number) ? number : least;
+}
+
+static bool read_material(Reader *reader, Fibre *fibre, const char *name, bool samples)
+{
+    if (samples || usd_text_peek(reader, false) == 'N') return false; // None
+    if (strcmp(name, "physics:youngsModulus") == 0)
+        fibre->youngs_modulus = number_above(reader, 0, HUGE_VAL);
+    else if (strcmp(name, "physics:density") == 0)
+        fibre->density = number_above(reader, 0, HUGE_VAL);
+    else if (strcmp(name, "physics:poissonsRatio") == 0)
+        fibre->poisson = number_above(reader, -1, 0.5);
+    else
+        return false;
+    return true;
+}
+
+// One thickness for all curves; thicknesses of single curves, segments or points are not used.
+static void read_thickness(Reader *reader, Fibre *fibre)
+{
+    UsdValues values = {0};
+    usd_text_read_values(reader, &values);
+    if (values.count == 1 && values.value[0] > 0 && isfinite(values.value[0]))
+        fibre->radius = (double)values.value[0] / 2;
+    free(values.value);
+}
+
 static bool read_attribute(void *to, void *object, const char *name, size_t length, bool samples,
                            char (**rate)[16])
 {
     const Usd *usd = to;
-    BasisCurves *curves = object;
+    BasisCurves *curves = ((UsdObject *)object)->curves;
     Reader *reader = usd->reader;
+    if (!curves)
+        return read_material(reader, &((UsdObject *)object)->material.fibre, name, samples);
+    if (strcmp(name, "physics:thicknesses") == 0) {
+        read_thickness(reader, &curves->fibre);
+        return true;
+    }
     struct {
         const char *name;
         char *text;
@@ -89,7 +149,8 @@ static bool read_attribute(void *to, void *object, const char *name, size_t leng
 
 static float *find_number(void *object, const char *word)
 {
-    BasisCurves *curves = object;
+    BasisCurves *curves = ((UsdObject *)object)->curves;
+    if (!curves) return NULL;
     return strcmp(word, "followers") == 0        ? &curves->followers
            : strcmp(word, "followerRadius") == 0 ? &curves->follower_radius
            : strcmp(word, "bothEndsFixed") == 0  ? &curves->both_ends_fixed
@@ -118,14 +179,61 @@ static void add_curves(Usd *usd, BasisCurves *curves)
     *curves = (BasisCurves){0};
 }
 
-static void end_curves(void *to, void *object)
+static void add_material(Usd *usd, const UsdMaterial *material)
 {
-    add_curves(to, object);
-    basis_curves_destroy(object);
+    if (!reader_ok(usd->reader) || !fibre_is_known(&material->fibre)) return;
+    UsdMaterial *more =
+        reader_realloc(usd->reader, usd->materials, (size_t)usd->material_count + 1, sizeof *more);
+    if (!more) {
+        reader_fail_memory(usd->reader);
+        return;
+    }
+    usd->materials = more;
+    usd->materials[usd->material_count] = *material;
+    usd->materials[usd->material_count++].path = usd->stage.prim[material->prim].path;
+}
+
+static void end_object(void *to, void *ended)
+{
+    UsdObject *object = ended;
+    if (object->curves) {
+        add_curves(to, object->curves);
+        basis_curves_destroy(object->curves);
+        free(object->curves);
+    } else {
+        add_material(to, &object->material);
+    }
     free(object);
 }
 
-static const UsdSchema CURVES = {begin_curves, read_attribute, find_number, end_curves};
+static const UsdSchema CURVES = {begin_object, read_attribute, find_number, end_object};
+
+// --- Materials.
+
+static int compare_paths(const void *a, const void *b)
+{
+    uint64_t x = ((const UsdMaterial *)a)->path, y = ((const UsdMaterial *)b)->path;
+    return (x > y) - (x < y);
+}
+
+// Gives the curves the materials that are bound to them.
+static void bind_materials(Usd *usd)
+{
+    double kilograms = usd->stage.mass_unit > 0 ? (double)usd->stage.mass_unit : 1;
+    if (usd->material_count)
+        qsort(usd->materials, usd->material_count, sizeof *usd->materials, compare_paths);
+    for (uint32_t i = 0; i < usd->curves_count && usd->material_count; ++i) {
+        Fibre *fibre = &usd->curves[i].fibre;
+        if (!reader_work(usd->reader, 64, 10)) return; // its parents
+        UsdMaterial wanted = {.path = usd_stage_find_material(&usd->stage, usd->curves[i].prim)};
+        const UsdMaterial *found = bsearch(&wanted, usd->materials, usd->material_count,
+                                           sizeof *usd->materials, compare_paths);
+        if (!found) continue;
+        fibre_fill(fibre, &found->fibre);
+        fibre->youngs_modulus *= kilograms;
+        fibre->density *= kilograms;
+    }
+}
 
 // --- Times.
 
@@ -203,6 +311,7 @@ static Result make_strands(Usd *usd, FormatSource *source, Strands *sets, UsdTim
 {
     Reader *reader = usd->reader;
     uint32_t cubic = 0;
+    bind_materials(usd);
     for (uint32_t i = 0; i < usd->curves_count && reader_ok(reader); ++i) {
         basis_curves_make(&usd->curves[i], reader, usd->wishes.points_per_strand, &sets[i]);
         cubic += strcmp(usd->curves[i].type, "linear") != 0;
@@ -259,6 +368,7 @@ static Result read(FormatSource *source, Reader *reader)
     for (uint32_t i = 0; sets && i < usd.curves_count; ++i) strands_destroy(&sets[i]);
     free(sets);
     usd_times_destroy(&times);
+    free(usd.materials);
     for (uint32_t i = 0; i < usd.curves_count; ++i) basis_curves_destroy(&usd.curves[i]);
     free(usd.curves);
     usd_stage_destroy(&usd.stage);

@@ -58,12 +58,65 @@ static void put_layer(FILE *stream, const CurvesOptions *options)
 // Attributes that the schema does not define.
 static void put_wishes(FILE *stream, const Strands *strands)
 {
-    if (!strands->followers && strands->follower_radius == 0.0f && !strands->both_ends_fixed)
-        return;
-    fprintf(stream, " (\n    customData = {\n        dictionary tractrix = {\n");
+    fprintf(stream, "    customData = {\n        dictionary tractrix = {\n");
     fprintf(stream, "            bool bothEndsFixed = %d\n", strands->both_ends_fixed);
     decimal_put(stream, "            float followerRadius = ", strands->follower_radius);
-    fprintf(stream, "\n            int followers = %u\n        }\n    }\n)", strands->followers);
+    fprintf(stream, "\n            int followers = %u\n        }\n    }\n", strands->followers);
+}
+
+static void put_metadata(FILE *stream, const Strands *strands)
+{
+    bool wishes =
+             strands->followers || strands->follower_radius != 0.0f || strands->both_ends_fixed,
+         fibre = fibre_is_known(&strands->fibre);
+    if (!wishes && !fibre) return;
+    fprintf(stream, " (\n");
+    if (fibre)
+        fprintf(stream, "    prepend apiSchemas = [\"MaterialBindingAPI\", "
+                        "\"PhysicsCurvesDeformableSimAPI\"]\n");
+    if (wishes) put_wishes(stream, strands);
+    fputc(')', stream);
+}
+
+// --- The material of the fibres, as the physics schemas for deformable curves name it, in the
+// unit of the file and kilograms.
+
+static void put_thickness(const UsdWriter *writer)
+{
+    FILE *stream = writer->file.stream;
+    const Fibre *fibre = &writer->strands->fibre;
+    if (!fibre_is_known(fibre)) return;
+    fprintf(stream, "    rel material:binding:physics = </Hair/Fibre>\n");
+    if (!(fibre->radius > 0)) return;
+    decimal_put(stream, "    float[] physics:thicknesses = [",
+                (float)(2 * fibre->radius / writer->options.metres_per_unit));
+    fprintf(stream, "]\n    uniform token physics:thicknesses:elementType = \"constant\"\n");
+}
+
+static void put_known(FILE *stream, const char *type_and_name, bool known, double value)
+{
+    if (!known) return;
+    fprintf(stream, "        %s", type_and_name);
+    decimal_put(stream, " = ", (float)value);
+    fputc('\n', stream);
+}
+
+static void put_material(const UsdWriter *writer)
+{
+    FILE *stream = writer->file.stream;
+    const Fibre *fibre = &writer->strands->fibre;
+    double unit = writer->options.metres_per_unit;
+    bool elastic = fibre->youngs_modulus > 0;
+    if (!fibre_is_known(fibre)) return;
+    fprintf(stream,
+            "\n    def Material \"Fibre\" (\n        prepend apiSchemas = ["
+            "\"PhysicsMaterialAPI\", \"PhysicsCurvesDeformableMaterialAPI\"]\n    )\n    {\n");
+    put_known(stream, "float physics:density", fibre->density > 0,
+              fibre->density * unit * unit * unit);
+    put_known(stream, "float physics:poissonsRatio", elastic && fibre->poisson > -1,
+              fibre->poisson);
+    put_known(stream, "float physics:youngsModulus", elastic, fibre->youngs_modulus * unit);
+    fprintf(stream, "    }\n");
 }
 
 static void put_groups(FILE *stream, const float *group, uint32_t count)
@@ -98,6 +151,7 @@ static void put_attributes(UsdWriter *writer)
     const CurvesLook *look = &writer->options.look;
     uint32_t features = strands_features(strands);
     put_sizes(writer->file.stream, strands);
+    put_thickness(writer);
     put_primvar(writer, "float[] widths", look->width, look->width_rate, 1, 1);
     put_color(writer, look->color, look->color_rate);
     if (features & STRANDS_HAS_STRAND_UV)
@@ -126,7 +180,7 @@ static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands
         writer->half_width = fmaxf(writer->half_width, look->width[i] / 2);
     put_layer(stream, &writer->options);
     fprintf(stream, "def BasisCurves \"Hair\"");
-    put_wishes(stream, strands);
+    put_metadata(stream, strands);
     fprintf(stream, "\n{\n    uniform token type = \"linear\"\n"
                     "    uniform token wrap = \"nonperiodic\"\n");
     put_attributes(writer);
@@ -201,7 +255,9 @@ static void put_extents(UsdWriter *writer)
         put_list(stream, writer->boxes[i], 2, 3, 3);
         fputs(animated ? ",\n" : "\n", stream);
     }
-    fputs(animated ? "    }\n}\n" : "}\n", stream);
+    if (animated) fputs("    }\n", stream);
+    put_material(writer);
+    fputs("}\n", stream);
 }
 
 Result usd_writer_finish(UsdWriter *writer, Error *error)

@@ -21,7 +21,8 @@ typedef struct UsdWriter {
 // their positions are not used. Writes all their features (strands_features): texture coordinates
 // as primvars:st (of strands) and primvars:st1 (of vertices), thickness as widths if the look has
 // none and as primvars:thickness, colours as displayColor likewise, mobility as primvars:mobility,
-// followers and fixed ends as customData. RESULT_FAILED with path and reason.
+// followers and fixed ends as customData, the fibres' material as a Material /Hair/Fibre and as
+// physics:thicknesses. RESULT_FAILED with path and reason.
 Result usd_writer_open(UsdWriter *writer, const char *path, const Strands *strands,
                        const CurvesOptions *options, Error *error);
 
