@@ -76,8 +76,8 @@ class Parameters(TypedDict, total=False):
     """Poisson's ratio of the fibre; the stiffness of twist is that of bending divided by 1 + ratio [-0.99 to 0.5;
     default 0.45; of rod]"""
     bend_damping: float
-    """internal damping of bending: time in which a bent fibre without mass straightens by 63 % (Kelvin-Voigt) [0 to
-    1000000 ms; default 1; of rod]"""
+    """internal damping of bending: time in which a bent fibre without mass straightens by 63 % (Kelvin-Voigt); acts up
+    to half a step, or 2 ms if that is longer [0 to 1000000 ms; default 1; of rod]"""
     ftl_damping: float
     """share of a particle's position correction that is subtracted from the velocity of the previous particle [0 to 1;
     default 0.98; of dftl]"""

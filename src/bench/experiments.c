@@ -11,12 +11,6 @@
 
 // --- Helpers.
 
-void experiment_add(Run *run, const char *what, double value)
-{
-    run->values[run->value_count].what = what;
-    run->values[run->value_count++].value = value;
-}
-
 static double square_distance(const float a[3], const double b[3])
 {
     double sum = 0;

@@ -3,7 +3,7 @@
 // (docs/physics.md has the derivations). For the solver rod.
 #pragma once
 
-#include "bench/experiments.h"
+#include "bench/experiment.h"
 
 // The tip of an inextensible elastic cantilever that is clamped horizontally and bends under its
 // own weight: its distance from the clamp and its drop, over the length. `gamma`: weight per length
