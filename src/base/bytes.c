@@ -54,9 +54,13 @@ int bytes_open_plain(const char *path, struct stat *status)
     if (stat(path, status) != 0) return -1;
     bool stream = is_stream(status);
     int descriptor = stream ? -1 : open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (descriptor >= 0) stream = fstat(descriptor, status) != 0 || is_stream(status);
+    int reason = EINVAL;
+    if (descriptor >= 0 && fstat(descriptor, status) != 0)
+        stream = true, reason = errno;
+    else if (descriptor >= 0)
+        stream = is_stream(status);
     if (descriptor >= 0 && stream) close(descriptor);
-    if (stream) errno = EINVAL;
+    if (stream) errno = reason;
     return stream ? -1 : descriptor;
 }
 

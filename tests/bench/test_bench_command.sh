@@ -54,7 +54,7 @@ same "$(field "$work/t.csv" value | awk '$1 < 1e-5' | wc -l)" 8 "states that are
 run 0 accuracy --part beam --algo spring --rates 60 --csv "$work/b.csv"
 same "$(awk -F, '$8 == "error" && $9 < 1e-5' "$work/b.csv" | wc -l)" 6 "shapes that are exact"
 run 0 accuracy --part physics --algo rod --rates 60 --csv "$work/c.csv"
-same "$(field "$work/c.csv" verdict | sort | uniq -c | tr -s ' ')" " 17 holds" "bounds of rods"
+same "$(field "$work/c.csv" verdict | grep -c holds)" 17 "bounds of rods"
 
 claim "what should change nothing: units and frame rates; what strands should keep: lengths and energy"
 run 0 accuracy --part scale,stretch,rate,drift --algo hybrid --seconds 1 --csv "$work/i.csv"

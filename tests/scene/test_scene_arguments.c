@@ -106,6 +106,8 @@ static bool gives_way(const ParamInfo *other, const ParamInfo *info)
         {"file_colors", "melanin"},  {"file_colors", "melanin_redness"},
         {"file_opacity", "opacity"}, {"file_opacity", "file_colors"},
     };
+    // What only rod has requires --algo rod, which keeps its shape without a style.
+    if (strcmp(other->name, "style") == 0 && strcmp(info->owner, "rod") == 0) return true;
     for (size_t i = 0; i < sizeof PAIRS / sizeof *PAIRS; i++)
         if (strcmp(PAIRS[i].other, other->name) == 0 && strcmp(PAIRS[i].to, info->name) == 0)
             return true;
