@@ -492,8 +492,8 @@ static void assert_same_guides(TractrixSimulation *one, TractrixSimulation *othe
 
 // A body that the host places moves its hair and its drawn mesh as the scene's formula does, and
 // leaves the other body alone. Bounds twice those of moves_as_the_scene_would, since a scene moves
-// roots by displacements in double precision and a host by float32 (1.01e-5); at most 1 % of the pixels
-// (at silhouettes) may show those differences.
+// roots by displacements in double precision and a host by float32 (1.01e-5); at most 1 % of the
+// pixels (at silhouettes) may show those differences.
 static void the_host_moves_one_of_two_bodies(void **state)
 {
     static uint8_t pixels[2][FIXTURE_PIXELS][4];
