@@ -52,8 +52,7 @@ class Parameters(TypedDict, total=False):
     variant: str
     """variant of the solver, see --algo list; empty: the first variant [default none]"""
     style: Union[float, Numbers, str]
-    """how much springs draw hair to its rest shape: 0 loose, 1 rigid; rod, which keeps its shape by itself: 0 unless
-    given [0 to 1; default 0.5]"""
+    """pull of springs to the rest shape: 0 loose, 1 rigid; rod: default 0 [0 to 1; default 0.5]"""
     rest: Literal["groom", "hanging"]
     """rest shape of hair with a style: groom, the shape in the file, in balance with gravity at time 0; hanging, the
     shape that the groom takes under its weight [default groom]"""

@@ -79,7 +79,15 @@ static void put_wrapped(FILE *stream, const char *text, size_t column, size_t in
 
 static void put_entry(FILE *stream, const char *left, const char *text)
 {
-    int used = fprintf(stream, "  %s", left);
+    int used = 0;
+    while (strlen(left) > WIDTH - 2) { // a list of many words breaks behind a bar
+        size_t fit = WIDTH - 2;
+        while (fit > 0 && left[fit - 1] != '|') --fit;
+        if (!fit) break;
+        fprintf(stream, "  %*s%.*s\n", used, "", (int)fit, left);
+        left += fit, used = 4;
+    }
+    used = fprintf(stream, "  %*s%s", used, "", left);
     if (used > COLUMN - 2) {
         fputc('\n', stream);
         used = 0;

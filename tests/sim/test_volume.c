@@ -340,7 +340,9 @@ static void every_solver_has_it(void **state)
             if (!isfinite(x[i][0] + x[i][1] + x[i][2]))
                 fail_msg("%s: vertex %u is no number", (*type)->name, i);
         uint32_t *dense = on ? gpu_buffer_read(&section_of(&world)->volume.dense) : NULL;
-        if (on && !*dense) fail_msg("%s: hair that falls together is not dense", (*type)->name);
+        bool falls = strcmp((*type)->name, "rod") != 0; // fibres of these lengths stand
+        if (on && falls && !*dense)
+            fail_msg("%s: hair that falls together is not dense", (*type)->name);
         free(dense);
         free(x);
         destroy(&world);
