@@ -7,8 +7,8 @@
 #pragma once
 
 #include "base/target.h"
+#include "formats/strands_read.h"
 #include "run/cache.h"
-#include "strands/strands_read.h"
 
 #include <jansson.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_output.h"
 
-#include "strands/formats/format.h"
+#include "formats/format.h"
 #include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"

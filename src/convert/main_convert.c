@@ -13,10 +13,10 @@
 #include "convert/convert_output.h"
 #include "convert/convert_steps.h"
 #include "convert/figures.h"
-#include "mesh/mesh_read.h"
-#include "mesh/mesh_sequence.h"
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/strands_read.h"
 #include "strands/strands.h"
-#include "strands/strands_read.h"
 
 #include <errno.h>
 #include <math.h>

@@ -4,15 +4,15 @@
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/quote.h"
+#include "formats/mesh_read.h"
+#include "formats/obj.h"
+#include "formats/strands_read.h"
 #include "gen/fur.h"
 #include "gen/head_motion.h"
 #include "gen/strands_make.h"
 #include "gen/studio_light.h"
 #include "mesh/head.h"
-#include "mesh/mesh_read.h"
-#include "mesh/obj.h"
 #include "mesh/scalp.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 
 #include "base/json.h"
 #include "base/suggest.h"
+#include "formats/strands_mend.h"
 #include "scene/scene_param.h"
-#include "strands/strands_mend.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The room mesh: triangle meshes on the CPU. Input: files (mesh_read.h, mesh_sequence.h) or
-// built-in shapes (scalp.h). Output: meshes, and surfaces, which answer queries about points of a
-// mesh, normals and distances (surface.h).
+// The room mesh: triangle meshes on the CPU. Input: meshes of files, which the room formats reads,
+// or built-in shapes (scalp.h). Output: meshes, and surfaces, which answer queries about points of
+// a mesh, normals and distances (surface.h).
 //
 // This file: the triangle mesh of a head or a body.
 #pragma once

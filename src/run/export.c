@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/export.h"
-#include "strands/formats/format.h"
+#include "formats/format.h"
 #include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"

@@ -3,12 +3,12 @@
 #include "base/bytes.h"
 #include "base/target.h"
 #include "draw/renderer_options.h"
+#include "formats/format.h"
 #include "image/exr_file.h"
 #include "image/pfm.h"
 #include "image/png.h"
 #include "run/record.h"
 #include "run/sequence.h"
-#include "strands/formats/format.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,12 +3,12 @@
 #include "base/quote.h"
 
 #include "base/activity.h"
-#include "mesh/mesh_read.h"
-#include "mesh/mesh_sequence.h"
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/strands_read.h"
 #include "scene/root_distance.h"
 #include "strands/paint.h"
 #include "strands/strands_edit.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <stdlib.h>

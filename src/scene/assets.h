@@ -2,10 +2,10 @@
 // The files of a scene: hair of all sections, the mesh and the environment image.
 #pragma once
 
+#include "formats/strands_read.h"
 #include "mesh/mesh.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
-#include "strands/strands_read.h"
 
 typedef struct Assets {
     uint32_t section_count;

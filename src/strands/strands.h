@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The room strands: hair strands on the CPU as files describe them, polylines from root to tip.
 //
-// It reads and writes hair files (strands_read.h, formats/format.h), mends and reports their
-// defects, measures and edits strands, and computes their colours and radii (paint.h) and their
-// followers (follow_plan.h). Input: files and SectionParams. Output: Strands in metres, y up, which
-// `sim` uploads to the GPU.
+// It measures and edits strands, and computes their colours and radii (paint.h) and their followers
+// (follow_plan.h). Input: strands of files, which the room formats reads, and SectionParams.
+// Output: Strands in metres, y up, which `sim` uploads to the GPU.
 #pragma once
 
 #include "base/error.h"

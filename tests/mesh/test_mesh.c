@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Meshes from Wavefront and PLY files, and meshes made by the program.
+#include "formats/mesh_read.h"
+#include "formats/obj.h"
 #include "mesh/mesh.h"
-#include "mesh/mesh_read.h"
-#include "mesh/obj.h"
 #include "mesh/scalp.h"
 #include "support/temporary.h"
 
