@@ -420,16 +420,31 @@ static json_t *defects_to_json(const StrandsReport *report, const char *path)
     return list;
 }
 
+static json_t *contents_to_json(const FormatContents *contents)
+{
+    json_t *list = json_array();
+    for (uint32_t i = 0; i < contents->count && i < FORMAT_OBJECTS; ++i) {
+        const FormatObject *object = &contents->object[i];
+        json_t *entry = json_pack("{ss si}", "path", object->path, "strands", object->strands);
+        if (object->why) json_object_set_new(entry, "left_out", json_string(object->why));
+        json_array_append_new(list, entry);
+    }
+    return list;
+}
+
 static json_t *report_to_json(const StrandsReport *report, const char *path)
 {
     return json_pack(
-        "{ss ss sf si si si si sf sb ss sb sb si si so}", "file", path, "kind",
+        "{ss ss sf si si si si sf sb ss sb sb si si ss si si si so ss so}", "file", path, "kind",
         FORMAT_TABLE[report->kind]->name, "version", (double)report->version, "declared_strands",
         report->declared_strands, "declared_vertices", report->declared_vertices, "strands",
         report->strands, "vertices", report->vertices, "unit_m", (double)report->unit_used,
         "unit_guessed", report->unit_guessed, "up", report->up_z ? "z" : "y", "up_guessed",
         report->up_guessed, "shuffled", report->shuffled, "empty_roots", report->empty_roots,
-        "shared_roots", report->shared_roots, "defects", defects_to_json(report, path));
+        "shared_roots", report->shared_roots, "note", report->note, "flaws", report->flaws,
+        "object_count", report->contents.count, "objects_left_out", report->contents.left_out,
+        "objects", contents_to_json(&report->contents), "attributes_not_read",
+        report->contents.unread, "defects", defects_to_json(report, path));
 }
 
 json_t *convert_input_to_json(const ConvertInput *input)

@@ -171,14 +171,89 @@ void alembic_longest(const Alembic *alembic, int object, uint32_t *sampling, uin
 
 // --- Objects.
 
-static bool is_hidden(Ogawa *file, const OgawaObject *object)
+typedef enum Shown { SHOWN_INHERITED, SHOWN_ALWAYS, SHOWN_NEVER } Shown;
+
+// What an object itself says: its nearest explicit value decides (AbcGeom's IsAncestorInvisible),
+// and what is visible in any sample is visible.
+static Shown find_shown(Ogawa *file, const OgawaObject *object)
 {
     const OgawaProperty *visible = ogawa_find(&object->own, "visible");
-    size_t count = 0;
-    double *number = visible && visible->samples ? ogawa_numbers(file, visible, 0, &count) : NULL;
-    bool hidden = number && count > 0 && number[0] == 0;
-    free(number);
-    return hidden;
+    uint32_t samples = visible ? visible->last ? visible->samples : visible->samples > 0 : 0;
+    Shown shown = SHOWN_INHERITED;
+    for (uint32_t i = 0; i < samples && shown != SHOWN_ALWAYS; ++i) {
+        size_t count = 0;
+        double *number = ogawa_numbers(file, visible, i, &count);
+        double value = number && count > 0 ? number[0] : -1;
+        free(number);
+        if (value > 0) shown = SHOWN_ALWAYS;
+        if (value == 0) shown = SHOWN_NEVER;
+        if (value < 0) return SHOWN_INHERITED;
+    }
+    return shown;
+}
+
+static void read_own(Alembic *alembic, int i)
+{
+    Ogawa *file = &alembic->file;
+    const OgawaObject *object = &file->object[i];
+    Shown shown = find_shown(file, object);
+    bool above = object->parent >= 0 && alembic->hidden[object->parent];
+    alembic->hidden[i] = shown == SHOWN_NEVER || (shown == SHOWN_INHERITED && above);
+    if (strncmp(object->schema, "AbcGeom_Xform", 13) == 0)
+        read_transform(file, object, &alembic->transform[i]);
+}
+
+// --- Instances. An object with the property .instanceSource stands for the object of this path and
+// all below it, under the instance's own parents. It becomes copies of these objects, which read
+// the same properties.
+
+enum { DEEPEST_INSTANCE = 8 };
+
+static int find_path(Ogawa *file, const char *path, int originals)
+{
+    if (!reader_work(file->reader, (uint64_t)originals, 20)) return -1;
+    for (int i = 0; i < originals; ++i)
+        if (strcmp(file->object[i].path, path) == 0) return i;
+    return -1;
+}
+
+static void expand(Ogawa *file, int instance, int originals, int depth);
+
+// Adds a copy of object `of`, at another path, and of those below it.
+static void copy_tree(Ogawa *file, int of, int parent, const char *path, int originals, int depth)
+{
+    int number = ogawa_add_copy(file, of, parent, path);
+    if (number < 0 || !reader_work(file->reader, (uint64_t)originals, 10)) return;
+    expand(file, number, originals, depth);
+    for (int i = of + 1; i < originals && reader_ok(file->reader); ++i) {
+        if (file->object[i].parent != of) continue;
+        char name[2 * OGAWA_PATH_SIZE];
+        const char *last = strrchr(file->object[i].path, '/');
+        snprintf(name, sizeof name, "%s%s", file->object[number].path, last ? last : "");
+        copy_tree(file, i, number, name, originals, depth);
+    }
+}
+
+static void expand(Ogawa *file, int instance, int originals, int depth)
+{
+    const OgawaProperty *source = ogawa_find(&file->object[instance].own, ".instanceSource");
+    size_t count;
+    char *path = source ? ogawa_texts(file, source, &count) : NULL;
+    if (!path) return;
+    int of = find_path(file, path, originals), above = instance;
+    if (depth >= DEEPEST_INSTANCE)
+        reader_fail(file->reader, "%s: instances of instances more than %d deep",
+                    file->object[instance].path, DEEPEST_INSTANCE);
+    while (above >= 0 && above != of) above = file->object[above].parent;
+    if (of >= 0 && above == of)
+        reader_fail(file->reader, "%s: an instance of its own parent", file->object[instance].path);
+    char name[OGAWA_PATH_SIZE];
+    snprintf(name, sizeof name, "%s", file->object[instance].path);
+    if (of >= 0 && reader_ok(file->reader))
+        copy_tree(file, of, file->object[instance].parent, name, originals, depth + 1);
+    else
+        file->lost_instances++;
+    free(path);
 }
 
 Result alembic_open(Alembic *alembic, Reader *reader)
@@ -186,16 +261,12 @@ Result alembic_open(Alembic *alembic, Reader *reader)
     Ogawa *file = &alembic->file;
     *alembic = (Alembic){0};
     TRY(ogawa_open(file, reader));
+    const int originals = file->count;
+    for (int i = 0; i < originals && reader_ok(reader); ++i) expand(file, i, originals, 0);
     alembic->transform = reader_calloc(reader, (size_t)file->count + 1, sizeof *alembic->transform);
     alembic->hidden = reader_calloc(reader, (size_t)file->count + 1, sizeof *alembic->hidden);
     if (!alembic->transform || !alembic->hidden) return reader_fail_memory(reader);
-    for (int i = 0; i < file->count && reader_ok(reader); ++i) {
-        const OgawaObject *object = &file->object[i];
-        alembic->hidden[i] =
-            (object->parent >= 0 && alembic->hidden[object->parent]) || is_hidden(file, object);
-        if (strncmp(object->schema, "AbcGeom_Xform", 13) == 0)
-            read_transform(file, object, &alembic->transform[i]);
-    }
+    for (int i = 0; i < file->count && reader_ok(reader); ++i) read_own(alembic, i);
     return reader->result;
 }
 

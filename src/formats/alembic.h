@@ -24,10 +24,11 @@ typedef struct AlembicTransform {
 typedef struct Alembic {
     Ogawa file;
     AlembicTransform *transform; // [file.count]
-    bool *hidden;                // [file.count] whether the object or a parent is hidden
+    bool *hidden; // [file.count] hidden in all samples, by its own word or the nearest parent's
 } Alembic;
 
-// Reads the tree of objects. Fails the reader, also for unknown transforms. Close it in any case.
+// Reads the tree of objects; instances become copies of what they stand for. Fails the reader, also
+// for unknown transforms. Close it in any case.
 Result alembic_open(Alembic *alembic, Reader *reader);
 void alembic_close(Alembic *alembic);
 

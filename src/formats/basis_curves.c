@@ -17,6 +17,33 @@ void basis_curves_destroy(BasisCurves *curves)
     *curves = (BasisCurves){0};
 }
 
+static void copy_values(UsdValues *copy, const UsdValues *values, Reader *reader)
+{
+    *copy = *values;
+    copy->value = NULL;
+    copy->room = values->count;
+    if (!values->value) return;
+    copy->value = reader_malloc(reader, values->count, sizeof *copy->value);
+    if (copy->value)
+        memcpy(copy->value, values->value, values->count * sizeof *copy->value);
+    else
+        copy->count = copy->room = 0;
+}
+
+void basis_curves_copy(BasisCurves *copy, const BasisCurves *curves, Reader *reader)
+{
+    *copy = *curves;
+    for (int i = 0; i < CURVES_ARRAYS; ++i) {
+        copy_values(&copy->array[i], &curves->array[i], reader);
+        copy_values(&copy->indices[i], &curves->indices[i], reader);
+    }
+    size_t count = curves->points.count;
+    copy->points.count = 0;
+    copy->points.sample = reader_calloc(reader, count + 1, sizeof *copy->points.sample);
+    for (size_t i = 0; copy->points.sample && i < count; ++i)
+        copy_values(&copy->points.sample[copy->points.count++], &curves->points.sample[i], reader);
+}
+
 // --- The strand's vertices as combinations of the curve's control points.
 
 typedef enum Basis { BASIS_LINEAR, BASIS_BEZIER, BASIS_BSPLINE, BASIS_CATMULL_ROM } Basis;
@@ -33,20 +60,33 @@ static Basis basis_of(const BasisCurves *curves)
     return strcmp(curves->basis, "catmullRom") == 0 ? BASIS_CATMULL_ROM : BASIS_BEZIER;
 }
 
-// Segments of a curve with `count` control points; 0 if no curve can have that many.
-static uint32_t count_segments(const BasisCurves *curves, uint32_t count)
+// Segments of a cubic curve with `count` control points; 0 if no curve can have that many.
+static uint32_t count_cubic(const BasisCurves *curves, Basis basis, uint32_t count)
 {
-    Basis basis = basis_of(curves);
-    if (basis == BASIS_LINEAR) return count ? count - 1 : 0;
     if (basis == BASIS_BEZIER) return count >= 4 && count % 3 == 1 ? (count - 1) / 3 : 0;
     if (is_pinned(curves)) return count >= 2 ? count - 1 : 0;
     return count >= 4 ? count - 3 : 0;
 }
 
+// The basis of a curve with `count` control points: too few of them are a polygon.
+static Basis basis_for(const BasisCurves *curves, uint32_t count)
+{
+    Basis basis = basis_of(curves);
+    bool whole = basis == BASIS_LINEAR || count_cubic(curves, basis, count);
+    return whole ? basis : BASIS_LINEAR;
+}
+
+static uint32_t count_segments(const BasisCurves *curves, uint32_t count)
+{
+    Basis basis = basis_for(curves, count);
+    if (basis != BASIS_LINEAR) return count_cubic(curves, basis, count);
+    return count ? count - 1 : 0;
+}
+
 // The number of vertices of the strand.
 static uint32_t count_vertices(const BasisCurves *curves, uint32_t count, uint32_t per_strand)
 {
-    Basis basis = basis_of(curves);
+    Basis basis = basis_for(curves, count);
     if (basis == BASIS_LINEAR) return count;
     if (per_strand) return per_strand;
     uint32_t each = curves->per_segment ? curves->per_segment : basis == BASIS_BEZIER ? 4 : 2;
@@ -81,7 +121,7 @@ static void find_weights(Basis basis, double t, double w[4])
 static Blend blend_at(const BasisCurves *curves, uint32_t count, uint32_t j, uint32_t n)
 {
     Blend blend = {{0}, {0}, 0};
-    Basis basis = basis_of(curves);
+    Basis basis = basis_for(curves, count);
     if (basis == BASIS_LINEAR) {
         blend = (Blend){{j, j, j, j}, {1, 0, 0, 0}, j};
         return blend;
@@ -177,8 +217,8 @@ static void value_at(const BasisCurves *curves, int array, Rate rate, uint32_t s
     }
 }
 
-// Values for each vertex. NULL if the file has none, or after an error.
-static float *spread(Reader *reader, const BasisCurves *curves, int array, const Strands *strands)
+// Values for each vertex. NULL if the file has none, if they do not fit, or after an error.
+static float *spread(Reader *reader, BasisCurves *curves, int array, const Strands *strands)
 {
     const UsdValues *values = &curves->array[array];
     uint32_t width = CURVES_WIDTHS[array];
@@ -186,7 +226,7 @@ static float *spread(Reader *reader, const BasisCurves *curves, int array, const
     Counts counts = count_rates(curves);
     Rate rate = find_rate(curves, array, &counts);
     if (rate == RATES) {
-        fail_count(reader, curves, array);
+        curves->unfit |= 1u << array;
         return NULL;
     }
     float *to = reader_malloc(reader, (size_t)strands->vertex_count * width, sizeof *to);
@@ -204,27 +244,34 @@ static float *spread(Reader *reader, const BasisCurves *curves, int array, const
     return to;
 }
 
-// Values for each strand, from uniform or constant ones; NULL for other rates.
-static float *spread_strands(Reader *reader, const BasisCurves *curves, int array,
-                             const Strands *strands)
+// Values for each strand: of curves, or of their roots. NULL as above.
+static float *spread_strands(Reader *reader, BasisCurves *curves, int array, const Strands *strands)
 {
     const UsdValues *values = &curves->array[array];
     uint32_t width = CURVES_WIDTHS[array];
     if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
     Counts counts = count_rates(curves);
     Rate rate = find_rate(curves, array, &counts);
-    if (rate != RATE_UNIFORM && rate != RATE_CONSTANT) {
-        fail_count(reader, curves, array);
+    if (rate == RATES) {
+        curves->unfit |= 1u << array;
         return NULL;
     }
     float *to = reader_malloc(reader, (size_t)strands->strand_count * width, sizeof *to);
-    for (uint32_t s = 0; to && s < strands->strand_count; ++s)
-        memcpy(to + (size_t)s * width,
-               values->value + (rate == RATE_UNIFORM ? (size_t)s : 0) * width, width * sizeof *to);
+    size_t at = 0;
+    for (uint32_t s = 0; to && s < strands->strand_count; ++s) {
+        uint32_t count = (uint32_t)curves->array[CURVES_COUNTS].value[s];
+        size_t last = values->count / width - 1; // a curve without points has no root
+        memcpy(to + (size_t)s * width, values->value + (at < last ? at : last) * width,
+               width * sizeof *to);
+        at += rate == RATE_UNIFORM   ? 1
+              : rate == RATE_VARYING ? count_segments(curves, count) + 1
+              : rate == RATE_VERTEX  ? count
+                                     : 0;
+    }
     return to;
 }
 
-static void set_colors(Reader *reader, const BasisCurves *curves, Strands *strands)
+static void set_colors(Reader *reader, BasisCurves *curves, Strands *strands)
 {
     float *color = spread(reader, curves, CURVES_COLOR, strands);
     float *opacity = spread(reader, curves, CURVES_OPACITY, strands);
@@ -242,7 +289,7 @@ static void set_colors(Reader *reader, const BasisCurves *curves, Strands *stran
 }
 
 // Sets the texture coordinates: of vertices if the file has them, otherwise of strands.
-static void set_texture(Reader *reader, const BasisCurves *curves, Strands *strands)
+static void set_texture(Reader *reader, BasisCurves *curves, Strands *strands)
 {
     Counts counts = count_rates(curves);
     Rate rate = find_rate(curves, CURVES_ST, &counts);
@@ -254,7 +301,7 @@ static void set_texture(Reader *reader, const BasisCurves *curves, Strands *stra
     memcpy(&strands->vertex_uv, &st1, sizeof st1);
 }
 
-static void set_attributes(Reader *reader, const BasisCurves *curves, Strands *strands)
+static void set_attributes(Reader *reader, BasisCurves *curves, Strands *strands)
 {
     strands->vertex_thickness = spread(reader, curves, CURVES_DIAMETERS, strands);
     set_colors(reader, curves, strands);
@@ -281,11 +328,10 @@ static void expand(Reader *reader, BasisCurves *curves, int array)
     for (size_t i = 0; all && i < indices->count; ++i) {
         float index = indices->value[i];
         if (!(index >= 0 && index < (float)count && index == floorf(index))) {
-            stand_at(reader, indices->line);
-            reader_fail(reader,
-                        "%s:indices: %g: expected a whole number below %zu, the number of values",
-                        curves->names[array], (double)index, count);
-            break;
+            curves->unfit |= 1u << array;
+            values->line = 0;
+            free(all);
+            return;
         }
         memcpy(all + i * width, values->value + (size_t)index * width, width * sizeof *all);
     }
@@ -299,23 +345,34 @@ static void expand(Reader *reader, BasisCurves *curves, int array)
 
 // --- Strands.
 
-static void check_kind(Reader *reader, const BasisCurves *curves)
+bool basis_curves_is_closed(const BasisCurves *curves)
 {
-    bool cubic = !*curves->type || strcmp(curves->type, "cubic") == 0;
-    bool known = !*curves->basis || strcmp(curves->basis, "bezier") == 0 ||
-                 strcmp(curves->basis, "bspline") == 0 || strcmp(curves->basis, "catmullRom") == 0;
-    stand_at(reader, curves->line);
-    if (!cubic && strcmp(curves->type, "linear") != 0)
-        reader_fail(reader, "curves of type %.40s: expected linear or cubic", curves->type);
-    if (cubic && !known)
-        reader_fail(reader, "curves of basis %.40s: expected bezier, bspline or catmullRom",
-                    curves->basis);
-    if (strcmp(curves->wrap, "periodic") == 0)
-        reader_fail(reader, "periodic curves: expected curves with ends");
+    return strcmp(curves->wrap, "periodic") == 0;
+}
+
+bool basis_curves_is_known(const BasisCurves *curves)
+{
+    static const char *const bases[] = {"", "bezier", "bspline", "catmullRom"};
+    if (strcmp(curves->type, "linear") == 0) return true;
+    if (*curves->type && strcmp(curves->type, "cubic") != 0) return false;
+    for (int i = 0; i < 4; ++i)
+        if (strcmp(curves->basis, bases[i]) == 0) return true;
+    return false;
+}
+
+// If the number of points changes over time, only the first sample is kept.
+static void keep_first_sample(BasisCurves *curves)
+{
+    UsdSamples *points = &curves->points;
+    for (size_t i = 1; i < points->count && !curves->changes; ++i)
+        curves->changes = points->sample[i].count != points->sample[0].count;
+    if (!curves->changes) return;
+    for (size_t i = 1; i < points->count; ++i) free(points->sample[i].value);
+    points->count = points->in_file = 1;
 }
 
 // Checks the number of points of each curve and returns how many vertices the curves make.
-static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t per_strand)
+static uint64_t check_sizes(Reader *reader, BasisCurves *curves, uint32_t per_strand)
 {
     const UsdValues *counts = &curves->array[CURVES_COUNTS];
     uint64_t points = curves->points.sample[0].count / 3, used = 0, vertices = 0;
@@ -332,23 +389,16 @@ static uint64_t check_sizes(Reader *reader, const BasisCurves *curves, uint32_t 
             break;
         }
         uint32_t count = (uint32_t)size;
-        stand_at(reader, counts->line);
-        if (basis_of(curves) != BASIS_LINEAR && !count_segments(curves, count))
-            reader_fail(
-                reader,
-                "a cubic curve of %u points: expected a number of points that makes whole segments",
-                count);
+        curves->polygons += basis_of(curves) != basis_for(curves, count);
         used += count;
         vertices += count_vertices(curves, count, per_strand);
     }
-    for (size_t i = 0; i < curves->points.count && reader_ok(reader); ++i) {
-        stand_at(reader, curves->points.sample[i].line);
-        if (curves->points.sample[i].count != 3 * used)
-            reader_fail(
-                reader,
-                "points: %zu numbers, which do not fit the curves: expected three for each point",
-                curves->points.sample[i].count);
-    }
+    stand_at(reader, curves->points.sample[0].line);
+    if (reader_ok(reader) && curves->points.sample[0].count != 3 * used)
+        reader_fail(
+            reader,
+            "points: %zu numbers, which do not fit the curves: expected three for each point",
+            curves->points.sample[0].count);
     if (reader_ok(reader) && vertices >= UINT32_MAX)
         reader_fail(reader, "too many points: expected fewer than 2^32 - 1");
     return vertices;
@@ -359,8 +409,8 @@ void basis_curves_make(BasisCurves *curves, Reader *reader, uint32_t per_strand,
     const UsdValues *counts = &curves->array[CURVES_COUNTS];
     uint32_t line = reader->line;
     *strands = (Strands){0};
-    check_kind(reader, curves);
     if (!reader_ok(reader)) return;
+    keep_first_sample(curves);
     uint64_t vertices = check_sizes(reader, curves, per_strand);
     for (int i = CURVES_DIAMETERS; i < CURVES_ARRAYS; ++i) expand(reader, curves, i);
     reader_charge(reader, vertices, sizeof *strands->position);
@@ -391,11 +441,12 @@ void basis_curves_place(const BasisCurves *curves, const Strands *strands, doubl
 {
     const float *a, *b;
     double share = usd_samples_find(&curves->points, time, &a, &b);
-    bool still = is_identity(matrix), linear = basis_of(curves) == BASIS_LINEAR;
+    bool still = is_identity(matrix);
     size_t start = 0;
     for (uint32_t s = 0; s < strands->strand_count; ++s) {
         uint32_t count = (uint32_t)curves->array[CURVES_COUNTS].value[s],
                  n = strands_size(strands, s);
+        bool linear = basis_for(curves, count) == BASIS_LINEAR;
         for (uint32_t j = 0; j < n; ++j) {
             Blend blend = blend_at(curves, count, j, n);
             double p[3] = {0, 0, 0};

@@ -31,15 +31,26 @@ typedef struct BasisCurves {
     char type[USD_WORD_SIZE], basis[USD_WORD_SIZE], wrap[USD_WORD_SIZE];
     uint32_t line; // line of the prim
     float followers, follower_radius, both_ends_fixed;
-    Fibre fibre; // in the file's units
-    int prim;
+    Fibre fibre;       // in the file's units
+    uint32_t unfit;    // bit k: array k does not fit, and was not read
+    uint32_t polygons; // cubic curves of too few points, which became polygons
+    bool changes;      // the numbers of points change; only the first sample is used
 } BasisCurves;
 
 void basis_curves_destroy(BasisCurves *curves);
 
+// A copy that owns its arrays. Fails the reader.
+void basis_curves_copy(BasisCurves *copy, const BasisCurves *curves, Reader *reader);
+
+// Whether the curves have no ends (periodic), and whether their type and basis are known.
+bool basis_curves_is_closed(const BasisCurves *curves);
+bool basis_curves_is_known(const BasisCurves *curves);
+
 // Makes the strands with attributes and with points that are all 0. `per_strand`: points of each
-// cubic curve; 0: by its segments. Fails the reader at the line of an array whose size does not
-// fit; the strands may be destroyed in either case.
+// cubic curve; 0: by its segments. A cubic curve whose number of points makes no whole segments
+// becomes the polygon of its points. Attributes whose size does not fit are not read (`unfit`).
+// Fails the reader at the line of points or counts that do not fit; the strands may be destroyed in
+// either case.
 void basis_curves_make(BasisCurves *curves, Reader *reader, uint32_t per_strand, Strands *strands);
 
 // Writes the points at a time, multiplied by the matrix (p' = p M), to `to` [strands.vertex_count].

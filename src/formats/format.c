@@ -2,6 +2,7 @@
 #include "formats/format.h"
 
 #include <endian.h>
+#include <fnmatch.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,7 +149,10 @@ Result format_source_create(FormatSource *source, Reader *reader, uint32_t stran
     FormatSource before = *source;
     *source = (FormatSource){.wishes = before.wishes,
                              .used_points = before.used_points,
-                             .used_array = before.used_array};
+                             .used_array = before.used_array,
+                             .used_objects = before.used_objects,
+                             .flaws = before.flaws,
+                             .contents = before.contents};
     memcpy(source->note, before.note, sizeof source->note);
     if (vertex_count >= UINT32_MAX)
         return reader_fail(reader, "%llu vertices: expected fewer than 2^32 - 1",
@@ -172,15 +176,90 @@ void format_source_destroy(FormatSource *source)
     *source = (FormatSource){0};
 }
 
-void format_source_note(FormatSource *source, const char *format, ...)
+static void add_note(FormatSource *source, const char *format, va_list arguments)
 {
     size_t used = strlen(source->note);
-    va_list arguments;
-    va_start(arguments, format);
     if (used > 0 && used + 2 < sizeof source->note)
         used += (size_t)sprintf(source->note + used, "; ");
     vsnprintf(source->note + used, sizeof source->note - used, format, arguments);
+}
+
+void format_source_note(FormatSource *source, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    add_note(source, format, arguments);
     va_end(arguments);
+}
+
+void format_source_flaw(FormatSource *source, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    add_note(source, format, arguments);
+    va_end(arguments);
+    source->flaws++;
+}
+
+// --- Objects of scene files.
+
+void format_copy_path(char to[FORMAT_PATH_SIZE], const char *path)
+{
+    size_t length = strlen(path), most = FORMAT_PATH_SIZE - 1;
+    snprintf(to, FORMAT_PATH_SIZE, "%s", length > most ? path + length - most : path);
+}
+
+void format_source_list(FormatSource *source, const char *path, uint32_t strands, const char *why)
+{
+    FormatContents *contents = &source->contents;
+    contents->left_out += why != NULL;
+    if (contents->count++ >= FORMAT_OBJECTS) return;
+    FormatObject *object = &contents->object[contents->count - 1];
+    *object = (FormatObject){.strands = strands, .why = why};
+    format_copy_path(object->path, path);
+}
+
+void format_source_unread(FormatSource *source, const char *name)
+{
+    FormatContents *contents = &source->contents;
+    size_t used = strlen(contents->unread), length = strlen(name);
+    for (const char *at = contents->unread; (at = strstr(at, name)); ++at)
+        if ((at == contents->unread || at[-1] == ' ') && (!at[length] || at[length] == ',')) return;
+    contents->unread_count++;
+    if (used + length + 3 > sizeof contents->unread) return;
+    sprintf(contents->unread + used, "%s%s", used ? ", " : "", name);
+}
+
+// Whether the path, or a name in it, matches the pattern.
+static bool matches(const char *pattern, const char *path)
+{
+    char name[FORMAT_PATH_SIZE];
+    if (fnmatch(pattern, path, 0) == 0) return true;
+    for (const char *at = path; *at;) {
+        at += *at == '/';
+        size_t length = strcspn(at, "/");
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        if (fnmatch(pattern, name, 0) == 0) return true;
+        at += length;
+    }
+    return false;
+}
+
+bool format_wants_object(const FormatWishes *wishes, const char *path)
+{
+    bool wants = false, chooses = false;
+    for (const char *at = wishes->objects; at && *at;) {
+        char pattern[FORMAT_PATH_SIZE];
+        size_t length = strcspn(at, ",");
+        bool leaves = *at == '!';
+        snprintf(pattern, sizeof pattern, "%.*s", (int)length - leaves, at + leaves);
+        bool found = matches(pattern, path);
+        if (found && leaves) return false;
+        wants = wants || found;
+        chooses = chooses || !leaves;
+        at += length + (at[length] == ',');
+    }
+    return wants || !chooses;
 }
 
 Result format_source_copy(Reader *reader, void *array, uint64_t start, size_t count, size_t width)

@@ -33,7 +33,12 @@
     X(NPY, npy, "npy")
 #define FORMATS(X) FORMATS_WRITTEN(X) X(SALON_BIN, salon_bin, "")
 
-enum { FORMAT_NOTE_SIZE = 400 };
+enum {
+    FORMAT_NOTE_SIZE = 800,
+    FORMAT_PATH_SIZE = 96, // of an object in a file; the beginning of a longer one is cut
+    FORMAT_OBJECTS = 64,   // listed by name; more are counted
+    FORMAT_UNREAD_SIZE = 300,
+};
 
 typedef enum FormatKind {
 #define KIND(kind, row, word) FORMAT_##kind,
@@ -50,15 +55,34 @@ typedef enum FormatKind {
 typedef struct FormatWishes {
     uint32_t points_per_strand; // for point clouds; 0: find it from jumps between points
     const char *array;          // name of the positions in .npz; NULL: see npz_file.c
+    const char *objects;        // which objects of a scene file; NULL: all (format_wants_object)
     bool all_frames;            // read all frames of an animated file
 } FormatWishes;
+
+// An object of a scene file.
+typedef struct FormatObject {
+    char path[FORMAT_PATH_SIZE]; // "/Head/scalp"
+    uint32_t strands;            // that are read
+    const char *why;             // NULL if it is read; otherwise why not, a constant text
+} FormatObject;
+
+// The objects of a file and the names of attributes that are not read.
+typedef struct FormatContents {
+    FormatObject object[FORMAT_OBJECTS];
+    uint32_t count, left_out;        // of all objects, also of those that are not listed
+    char unread[FORMAT_UNREAD_SIZE]; // "name, name"; cut if there are too many
+    uint32_t unread_count;
+} FormatContents;
 
 // The output of a format's reader: the file's content, neither mended nor converted. The struct
 // owns everything; a zeroed struct is empty. Strands may have any number of vertices here.
 typedef struct FormatSource {
     FormatWishes wishes;          // the caller's
     bool used_points, used_array; // whether this wish had an effect
+    bool used_objects;            // the format has objects
     char note[FORMAT_NOTE_SIZE];  // choices and omissions of the reader; "" if none
+    uint32_t flaws;               // how many of these --strict refuses
+    FormatContents contents;      // of a scene file
     Strands strands;              // the file's unit and axes
     uint64_t *place;        // [strand_count] line of the strand's head, or byte of its first vertex
     uint32_t *vertex_line;  // [vertex_count] line, only for text
@@ -147,6 +171,23 @@ void format_source_destroy(FormatSource *source);
 // Appends to the note of the source (printf style), separated by "; "; cut if it is too long.
 void format_source_note(FormatSource *source, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+// The same for an omission that may give other hair than the file describes: --strict refuses it.
+void format_source_flaw(FormatSource *source, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+// Lists an object. `why`: NULL if it is read; otherwise a constant text.
+void format_source_list(FormatSource *source, const char *path, uint32_t strands, const char *why);
+
+// Counts an attribute that is not read; lists each name once.
+void format_source_unread(FormatSource *source, const char *name);
+
+// Whether the wishes include an object: its path or a name in it ("/Head/scalp", "scalp", "Head")
+// matches a pattern (* and ?) of the list "scalp,brows", or none of the patterns after "!".
+bool format_wants_object(const FormatWishes *wishes, const char *path);
+
+// Copies a path; cuts the beginning of one that is too long.
+void format_copy_path(char to[FORMAT_PATH_SIZE], const char *path);
 
 // Adds the optional array at `*array` (one of the strands' members) with `count` times `width`
 // floats, copied from byte `start`, which the caller has checked. Fails like reader_fail_memory.

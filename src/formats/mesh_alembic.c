@@ -66,15 +66,24 @@ static void open_mesh(AbcMeshes *all, int object, MeshSamples *samples)
 static void open_all(AbcMeshes *all, MeshSamples *samples)
 {
     Ogawa *file = &all->alembic.file;
-    uint32_t curves = 0;
+    uint32_t curves = 0, shown = 0, hidden = 0;
     all->mesh = reader_calloc(file->reader, (uint64_t)file->count + 1, sizeof *all->mesh);
     for (int i = 0; i < file->count && reader_ok(file->reader); ++i) {
         const char *schema = file->object[i].schema;
         curves += begins_with(schema, "AbcGeom_Curve");
         bool is_mesh =
             begins_with(schema, "AbcGeom_PolyMesh") || begins_with(schema, "AbcGeom_SubD");
-        if (is_mesh && !all->alembic.hidden[i]) open_mesh(all, i, samples);
+        hidden += is_mesh && all->alembic.hidden[i];
+        shown += is_mesh && !all->alembic.hidden[i];
     }
+    for (int i = 0; i < file->count && reader_ok(file->reader); ++i) {
+        const char *schema = file->object[i].schema;
+        bool is_mesh =
+            begins_with(schema, "AbcGeom_PolyMesh") || begins_with(schema, "AbcGeom_SubD");
+        if (is_mesh && (shown == 0 || !all->alembic.hidden[i])) open_mesh(all, i, samples);
+    }
+    if (shown == 0 && hidden)
+        mesh_samples_note(samples, "all meshes are hidden: they are read all the same");
     file->reader->at = 0;
     if (reader_ok(file->reader) && all->count == 0)
         reader_fail(file->reader,
@@ -184,15 +193,17 @@ static void read(MeshSamples *samples, Reader *reader)
     AbcMeshes all = {0};
     if (alembic_open(&all.alembic, reader) == RESULT_OK) open_all(&all, samples);
     const Ogawa *file = &all.alembic.file;
-    samples->count = all.samples;
+    const OgawaFrames frames = ogawa_frames(file, all.sampling, all.samples);
+    samples->count = frames.count;
     for (uint32_t i = 0; i < all.count && reader_ok(reader); ++i)
         read_faces(&all, &all.mesh[i], samples);
     if (reader_ok(reader) && mesh_samples_create(samples, reader))
-        for (uint32_t s = 0; s < all.samples && reader_ok(reader); ++s)
+        for (uint32_t s = 0; s < frames.count && reader_ok(reader); ++s)
             for (uint32_t i = 0; i < all.count; ++i)
-                place(&all, &all.mesh[i], ogawa_even_time(file, all.sampling, all.samples, s),
+                place(&all, &all.mesh[i], ogawa_frame_time(file, &frames, s),
                       samples->position + s * samples->vertex_count + all.mesh[i].first);
-    samples->rate = reader_ok(reader) ? ogawa_rate(file, all.sampling, all.samples) : 0;
+    samples->rate = frames.rate;
+    samples->first = frames.rate > 0 ? frames.start * frames.rate : 0;
     samples->unit = file->unit;
     samples->up_z = file->up_z;
     for (uint32_t i = 0; i < all.count; ++i) {

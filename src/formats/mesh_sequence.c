@@ -7,6 +7,7 @@
 #include <libdeflate.h>
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +34,17 @@ bool mesh_samples_create(MeshSamples *samples, Reader *reader)
                            (unsigned long long)count, (unsigned long long)vertices) == RESULT_OK;
     samples->position = reader_malloc_frames(reader, count, vertices);
     return samples->position;
+}
+
+void mesh_samples_note(MeshSamples *samples, const char *format, ...)
+{
+    size_t used = strlen(samples->note);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used > 0 && used + 2 < sizeof samples->note)
+        used += (size_t)sprintf(samples->note + used, "; ");
+    vsnprintf(samples->note + used, sizeof samples->note - used, format, arguments);
+    va_end(arguments);
 }
 
 static void mesh_samples_destroy(MeshSamples *samples)
@@ -123,6 +135,7 @@ static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *ta
                            count);
     if (result == RESULT_OK) {
         sequence->times.count = (uint32_t)count;
+        sequence->first = first;
         sequence->vertex_count = mesh->vertex_count;
         sequence->position = malloc(count * vertices * sizeof *sequence->position + 1);
         if (!sequence->position)
@@ -229,6 +242,8 @@ static Result take_samples(MeshSequence *sequence, Mesh *mesh, MeshSamples *samp
     TRY(make_mesh(mesh, samples, rest, path, error));
     sequence->times.count = (uint32_t)samples->count;
     sequence->times.rate = samples->rate;
+    sequence->first = samples->first;
+    memcpy(sequence->note, samples->note, sizeof sequence->note);
     sequence->vertex_count = mesh->vertex_count;
     sequence->position = samples->position;
     samples->position = NULL;

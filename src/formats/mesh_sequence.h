@@ -6,12 +6,16 @@
 #include "mesh/mesh.h"
 #include "mesh/sample_span.h"
 
+enum { MESH_NOTE_SIZE = 300 };
+
 typedef struct MeshSequence {
-    SampleTimes times;     // count 0: there is no sequence
-    uint32_t vertex_count; // per sample
-    float (*position)[3];  // [times.count * vertex_count], metres, y up
-    uint32_t checksum;     // CRC-32 of the positions as read
-    double earlier;        // number of shapes that mesh_sequence_push has discarded
+    SampleTimes times;         // count 0: there is no sequence
+    double first;              // number of the first sample, in the file's frames
+    char note[MESH_NOTE_SIZE]; // what was chosen or left out; "" if nothing
+    uint32_t vertex_count;     // per sample
+    float (*position)[3];      // [times.count * vertex_count], metres, y up
+    uint32_t checksum;         // CRC-32 of the positions as read
+    double earlier;            // number of shapes that mesh_sequence_push has discarded
 } MeshSequence;
 
 typedef struct MeshSequenceOptions {
@@ -32,7 +36,9 @@ typedef struct MeshSamples {
     uint32_t (*triangle)[3]; // [triangle_count], below vertex_count; NULL if the file has no faces
     uint64_t triangle_count;
     double rate, unit; // 0 if the file does not say
+    double first;      // number of the first sample, in frames of this rate
     int up_z;          // -1 if the file does not say
+    char note[MESH_NOTE_SIZE];
 } MeshSamples;
 
 typedef struct MeshSequenceFormat {
@@ -46,6 +52,10 @@ extern const MeshSequenceFormat MESH_SEQUENCE_NPZ, MESH_SEQUENCE_NPY, MESH_SEQUE
 
 // Allocates the positions. Fails the reader if memory is short or the counts exceed it.
 bool mesh_samples_create(MeshSamples *samples, Reader *reader);
+
+// Appends to the note (printf style), separated by "; "; cut if it is too long.
+void mesh_samples_note(MeshSamples *samples, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 // Whether `path` names a sequence by its pattern (x_%04d.obj) or its content. False for OBJ and PLY
 // files, and for files that cannot be read; mesh_read then reports the error.

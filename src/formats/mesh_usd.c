@@ -16,15 +16,15 @@ typedef struct UsdMesh {
     int prim;
     UsdSamples points, counts, corners;
     bool left_handed; // corners are listed clockwise
-    bool skinned;     // deformed by a skeleton, which is not supported
+    bool copy;        // of another one, which owns the samples
     uint64_t first;   // first vertex in the joined mesh
 } UsdMesh;
 
 typedef struct UsdMeshes {
     Reader *reader;
     UsdStage stage;
-    UsdMesh *mesh; // [count] only meshes with points
-    uint32_t count, left_out, curves;
+    UsdMesh *mesh;                          // [count] only meshes with points
+    uint32_t count, kept, left_out, curves; // the first `kept` meshes are read
 } UsdMeshes;
 
 static bool match(const char *path, const Bytes *bytes)
@@ -35,6 +35,7 @@ static bool match(const char *path, const Bytes *bytes)
 
 static void destroy_mesh(UsdMesh *mesh)
 {
+    if (mesh->copy) return;
     usd_samples_destroy(&mesh->points);
     usd_samples_destroy(&mesh->counts);
     usd_samples_destroy(&mesh->corners);
@@ -69,8 +70,6 @@ static bool read_attribute(void *to, void *object, const char *name, size_t leng
             usd_samples_read(known[i].values, reader, samples, true);
             return true;
         }
-    if (strncmp(name, "primvars:skel:jointIndices", length) == 0 && length == 26)
-        mesh->skinned = true;
     if (strcmp(name, "orientation") != 0 || usd_text_peek(reader, false) != '"') return false;
     char word[USD_WORD_SIZE];
     usd_text_read_string(reader, word);
@@ -83,15 +82,6 @@ static void add_mesh(UsdMeshes *all, UsdMesh *mesh)
     Reader *reader = all->reader;
     if (!reader_ok(reader) || mesh->points.count == 0 || mesh->points.sample[0].count == 0)
         return; // an `over`, or an empty mesh
-    if (usd_stage_hides(&all->stage, mesh->prim)) {
-        ++all->left_out;
-        return;
-    }
-    if (usd_stage_instances(&all->stage, mesh->prim))
-        reader_fail(reader, "meshes of a PointInstancer are not read: %s", USD_FLATTEN);
-    if (mesh->skinned && !mesh->points.timed)
-        reader_fail(reader, "a mesh that a skeleton moves: expected baked points "
-                            "(points.timeSamples), from the program that exported it");
     UsdMesh *more = reader_realloc(reader, all->mesh, ((size_t)all->count + 1), sizeof *more);
     if (!more) {
         reader_fail_memory(reader);
@@ -109,7 +99,59 @@ static void end_mesh(void *to, void *object)
     free(object);
 }
 
-static const UsdSchema MESHES = {begin_mesh, read_attribute, NULL, end_mesh};
+// The mesh of a prim that another one repeats.
+static void repeat_mesh(void *to, int of, int prim, const char *path)
+{
+    UsdMeshes *all = to;
+    int from = -1;
+    (void)path;
+    if (!reader_work(all->reader, all->count, 3)) return;
+    for (uint32_t i = 0; i < all->count; ++i) {
+        if (all->mesh[i].prim == prim) return;
+        if (all->mesh[i].prim == of) from = (int)i;
+    }
+    if (from < 0) return;
+    UsdMesh copy = all->mesh[from];
+    copy.prim = prim;
+    copy.copy = true;
+    add_mesh(all, &copy);
+}
+
+static const UsdSchema MESHES = {"Mesh", begin_mesh, read_attribute, NULL, end_mesh, repeat_mesh};
+
+// Keeps the meshes that are drawn, or if all are hidden, the hidden ones; the others go to the end.
+static void choose_meshes(UsdMeshes *all, MeshSamples *samples)
+{
+    Reader *reader = all->reader;
+    const UsdStage *stage = &all->stage;
+    uint32_t shown = 0, hidden = 0, kept = 0, scattered = 0;
+    for (uint32_t i = 0; i < all->count; ++i) {
+        bool lacks = usd_stage_lacks(stage, all->mesh[i].prim);
+        bool hides = usd_stage_hides(stage, all->mesh[i].prim);
+        shown += !lacks && !hides;
+        hidden += !lacks && hides;
+    }
+    for (uint32_t i = 0; i < all->count && reader_ok(reader); ++i) {
+        UsdMesh *mesh = &all->mesh[i], other = *mesh;
+        bool in_instancer = usd_stage_instances(stage, mesh->prim);
+        scattered += in_instancer;
+        if (usd_stage_lacks(stage, mesh->prim) || in_instancer ||
+            (shown && usd_stage_hides(stage, mesh->prim)))
+            continue;
+        if (usd_stage_skins(stage, mesh->prim) && !mesh->points.timed)
+            reader_fail(reader, "a mesh that a skeleton moves: expected baked points "
+                                "(points.timeSamples), from the program that exported it");
+        *mesh = all->mesh[kept];
+        all->mesh[kept++] = other;
+    }
+    if (!shown && hidden)
+        mesh_samples_note(samples, "all meshes are hidden: they are read all the same");
+    if (scattered)
+        mesh_samples_note(samples, "meshes of a PointInstancer are left out: make them real "
+                                   "objects in the program that exported them");
+    all->left_out = all->count - kept;
+    all->kept = kept;
+}
 
 // --- Faces.
 
@@ -221,7 +263,7 @@ static void read_positions(UsdMeshes *all, const UsdTimes *times, MeshSamples *s
     samples->count = times->count ? times->count : 1;
     if (!mesh_samples_create(samples, reader)) return;
     for (uint64_t s = 0; s < samples->count && reader_ok(reader); ++s)
-        for (uint32_t i = 0; i < all->count; ++i)
+        for (uint32_t i = 0; i < all->kept; ++i)
             place(all, &all->mesh[i], times->count ? times->time[s] : 0,
                   samples->position + s * samples->vertex_count + all->mesh[i].first);
 }
@@ -230,7 +272,7 @@ static void make_samples(UsdMeshes *all, MeshSamples *samples)
 {
     Reader *reader = all->reader;
     UsdTimes times = {.step = 1};
-    for (uint32_t i = 0; i < all->count && reader_ok(reader); ++i) {
+    for (uint32_t i = 0; i < all->kept && reader_ok(reader); ++i) {
         UsdMesh *mesh = &all->mesh[i];
         check_points(reader, mesh);
         mesh->first = samples->vertex_count;
@@ -242,6 +284,7 @@ static void make_samples(UsdMeshes *all, MeshSamples *samples)
     if (reader_ok(reader) && times.count > 1) usd_times_even_out(&times, reader);
     if (reader_ok(reader)) read_positions(all, &times, samples);
     samples->rate = usd_stage_rate(&all->stage) / (times.step > 0 ? times.step : 1);
+    samples->first = times.first;
     usd_times_destroy(&times);
 }
 
@@ -249,7 +292,8 @@ static void read(MeshSamples *samples, Reader *reader)
 {
     UsdMeshes all = {.reader = reader};
     usd_stage_read(&all.stage, reader, &MESHES, &all);
-    if (reader_ok(reader) && all.count == 0)
+    if (reader_ok(reader)) choose_meshes(&all, samples);
+    if (reader_ok(reader) && all.kept == 0)
         reader_fail(reader, all.left_out ? "no visible Mesh prim"
                             : all.curves ? "hair, not a mesh: " FOREIGN_WANTS_MESH
                                          : "no Mesh prim with points");

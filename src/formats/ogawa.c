@@ -195,11 +195,11 @@ static OgawaProperties read_compound(Ogawa *file, uint64_t place)
     Reader *reader = file->reader;
     OgawaProperties properties = {0};
     Block group = open_group(reader, place);
-    if (group.size < 2 || !reader_ok(reader) || !is_new(file, place)) return properties;
+    if (group.size < 2 || !reader_ok(reader)) return properties;
     uint64_t headers = child_of(reader, group, group.size - 1);
     if (!(headers & DATA_BIT)) return properties;
     Block data = open_data(reader, headers);
-    if (data.size == 0 || !is_new(file, data.at)) return properties;
+    if (data.size == 0 || !reader_work(reader, data.size, 10)) return properties;
     // The shortest header has 6 bytes, which bounds their number.
     uint64_t most = data.size / 6 < group.size - 1 ? data.size / 6 : group.size - 1;
     properties.property = reader_calloc(reader, (size_t)most + 1, sizeof *properties.property);
@@ -288,6 +288,37 @@ double *ogawa_numbers(Ogawa *file, const OgawaProperty *property, uint32_t sampl
         number[i] = number_at(reader->data + data.at + KEY_BYTES + i * pod.bytes, pod);
     *count = (size_t)numbers;
     return number;
+}
+
+char *ogawa_texts(Ogawa *file, const OgawaProperty *property, size_t *count)
+{
+    Reader *reader = file->reader;
+    enum { STRING_POD = 12 };
+    *count = 0;
+    if (!reader_ok(reader) || property->pod != STRING_POD || !property->samples) return NULL;
+    Block group = open_group(reader, property->group);
+    if (!reader_ok(reader) || group.size == 0) return NULL;
+    Block data = open_data(reader, child_of(reader, group, 0));
+    if (!reader_ok(reader) || data.size <= KEY_BYTES) return NULL;
+    size_t size = (size_t)(data.size - KEY_BYTES);
+    char *texts = reader_malloc(reader, size + 1, 1);
+    if (!texts) return NULL;
+    memcpy(texts, reader->data + data.at + KEY_BYTES, size);
+    texts[size] = 0;
+    for (size_t i = 0; i < size; ++i) *count += !texts[i];
+    *count += texts[size - 1] != 0; // a scalar has no zero
+    return texts;
+}
+
+uint32_t ogawa_extent(Ogawa *file, const OgawaProperties *of, const char *name)
+{
+    const OgawaProperty *property = ogawa_find(of, name);
+    if (!property || !property->compound) return property ? property->extent : 0;
+    OgawaProperties inner = ogawa_compound(file, of, name);
+    const OgawaProperty *values = ogawa_find(&inner, ".vals");
+    uint32_t extent = values ? values->extent : 0;
+    ogawa_free(&inner);
+    return extent;
 }
 
 // Replaces indices by the items they refer to.
@@ -399,20 +430,36 @@ double ogawa_around(const Ogawa *file, uint32_t sampling, uint32_t count, double
     return time >= to ? 1 : (time - from) / (to - from);
 }
 
-double ogawa_rate(const Ogawa *file, uint32_t sampling, uint32_t count)
+OgawaFrames ogawa_frames(const Ogawa *file, uint32_t sampling, uint32_t count)
 {
-    if (count < 2) return 0;
     const OgawaSampling *times = sampling < file->sampling_count ? &file->sampling[sampling] : NULL;
-    if (times && times->count == 1 && times->cycle > 0) return 1 / times->cycle;
-    double span = ogawa_time(file, sampling, count - 1) - ogawa_time(file, sampling, 0);
-    return span > 0 ? (count - 1) / span : 0;
+    double first = ogawa_time(file, sampling, 0);
+    OgawaFrames frames = {.sampling = sampling, .samples = count, .start = first, .count = count};
+    if (count < 2) return frames;
+    double span = ogawa_time(file, sampling, count - 1) - first;
+    bool cyclic = times && times->count > 1 && times->cycle > 0 && count > times->count;
+    bool uniform = times && times->count == 1 && times->cycle > 0;
+    frames.rate = uniform || cyclic ? 1 / times->cycle : span > 0 ? (count - 1) / span : 0;
+    if (!cyclic) return frames;
+    // Several samples a frame, as for motion blur: the frames are the whole ones.
+    double whole = ceil(first * frames.rate - 1e-6);
+    double last = floor((first + span) * frames.rate + 1e-6);
+    if (!(last >= whole && last - whole < 1e7)) return frames;
+    frames.start = whole / frames.rate;
+    frames.count = (uint32_t)(last - whole) + 1;
+    return frames;
 }
 
-double ogawa_even_time(const Ogawa *file, uint32_t sampling, uint32_t count, uint32_t i)
+double ogawa_frame_time(const Ogawa *file, const OgawaFrames *frames, uint32_t i)
 {
-    double rate = ogawa_rate(file, sampling, count), own = ogawa_time(file, sampling, i);
-    double even = rate > 0 ? ogawa_time(file, sampling, 0) + i / rate : own;
-    return fabs(even - own) * rate < 1e-6 ? own : even;
+    uint32_t before, after;
+    double time =
+        frames->rate > 0 ? frames->start + i / frames->rate : ogawa_time(file, frames->sampling, i);
+    if (frames->samples < 2) return time;
+    ogawa_around(file, frames->sampling, frames->samples, time, &before, &after);
+    double a = ogawa_time(file, frames->sampling, before),
+           b = ogawa_time(file, frames->sampling, after), near = 1e-6 / frames->rate;
+    return fabs(a - time) < near ? a : fabs(b - time) < near ? b : time;
 }
 
 // --- Objects.
@@ -432,6 +479,19 @@ static OgawaObject *add_object(Ogawa *file, int parent, const char *name, uint32
     return object;
 }
 
+int ogawa_add_copy(Ogawa *file, int of, int parent, const char *path)
+{
+    OgawaObject *object = add_object(file, parent, "", 0);
+    if (!object) return -1;
+    OgawaObject copy = file->object[of];
+    copy.parent = parent;
+    copy.copy = true;
+    size_t length = strlen(path), most = sizeof copy.path - 1;
+    snprintf(copy.path, sizeof copy.path, "%s", length > most ? path + length - most : path);
+    *object = copy;
+    return file->count - 1;
+}
+
 static void read_children(Ogawa *file, int parent, Block group, int depth);
 
 static void read_object(Ogawa *file, int number, uint64_t place, int depth)
@@ -443,7 +503,10 @@ static void read_object(Ogawa *file, int number, uint64_t place, int depth)
     if (depth > DEEPEST) reader_fail(reader, "objects are nested more than %d deep", DEEPEST);
     if (group.size == 0 || !is_new(file, place)) return;
     uint64_t properties = child_of(reader, group, 0);
-    if (!(properties & DATA_BIT)) object->own = read_compound(file, properties);
+    if (!(properties & DATA_BIT)) {
+        OgawaProperties own = read_compound(file, properties);
+        file->object[number].own = own;
+    }
     read_children(file, number, group, depth);
 }
 
@@ -514,7 +577,8 @@ Result ogawa_open(Ogawa *file, Reader *reader)
 
 void ogawa_close(Ogawa *file)
 {
-    for (int i = 0; i < file->count; ++i) ogawa_free(&file->object[i].own);
+    for (int i = 0; i < file->count; ++i)
+        if (!file->object[i].copy) ogawa_free(&file->object[i].own);
     for (uint32_t i = 0; i < file->sampling_count; ++i) free(file->sampling[i].time);
     free(file->object);
     free(file->sampling);

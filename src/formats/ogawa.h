@@ -41,14 +41,16 @@ typedef struct OgawaObject {
     int parent; // -1: none
     uint64_t group;
     OgawaProperties own;
+    bool copy; // of another object, which owns `own`
 } OgawaObject;
 
 typedef struct Ogawa {
     Reader *reader;
     OgawaObject *object; // [count], parents before their children
     int count;
-    double unit; // metres, if a file of this program says so; otherwise 0
-    int up_z;    // 1 or 0; -1 if the file does not say
+    uint32_t lost_instances; // of objects that the file does not have
+    double unit;             // metres, if a file of this program says so; otherwise 0
+    int up_z;                // 1 or 0; -1 if the file does not say
     // --- Internal.
     OgawaSampling *sampling;
     uint32_t sampling_count;
@@ -62,8 +64,12 @@ bool ogawa_matches(const Bytes *bytes);
 Result ogawa_open(Ogawa *file, Reader *reader);
 void ogawa_close(Ogawa *file);
 
+// Adds a copy of object `of` at another place of the tree, which reads the same properties. Returns
+// its number; -1, and fails the reader, if memory is short.
+int ogawa_add_copy(Ogawa *file, int of, int parent, const char *path);
+
 // The properties in the compound `name` (".geom") of an object or of another compound; empty if
-// there is none. Each compound can be read only once.
+// there is none.
 OgawaProperties ogawa_compound(Ogawa *file, const OgawaProperties *of, const char *name);
 void ogawa_free(OgawaProperties *properties);
 
@@ -73,6 +79,13 @@ const OgawaProperty *ogawa_find(const OgawaProperties *properties, const char *n
 // All numbers of a sample, which the caller frees. Sample 0 of a property without samples is empty;
 // a sample after the last is the last. NULL after an error. Integers beyond 2^53 are rounded.
 double *ogawa_numbers(Ogawa *file, const OgawaProperty *property, uint32_t sample, size_t *count);
+
+// The texts of the first sample of a property of strings, each with its zero, one after the other,
+// which the caller frees. NULL if it has none.
+char *ogawa_texts(Ogawa *file, const OgawaProperty *property, size_t *count);
+
+// The numbers per item of a geometry parameter; 0 if there is none with this name.
+uint32_t ogawa_extent(Ogawa *file, const OgawaProperties *of, const char *name);
 
 // A geometry parameter at its first sample, with its indices applied: *count numbers, `extent` per
 // item. NULL if there is none with this name and extent.
@@ -86,7 +99,17 @@ double ogawa_time(const Ogawa *file, uint32_t sampling, uint32_t sample);
 double ogawa_around(const Ogawa *file, uint32_t sampling, uint32_t count, double time,
                     uint32_t *before, uint32_t *after);
 
-// The times at which samples are evaluated: their own if they are even, otherwise as many at even
-// distances. ogawa_rate: samples per second, 0 for a single sample.
-double ogawa_even_time(const Ogawa *file, uint32_t sampling, uint32_t count, uint32_t i);
-double ogawa_rate(const Ogawa *file, uint32_t sampling, uint32_t count);
+// The frames of samples. Uniform samples are frames. Of samples with a cycle (several a frame, as
+// for motion blur) the whole frames are: one for each cycle. Others become as many frames at even
+// distances.
+typedef struct OgawaFrames {
+    uint32_t sampling, samples;
+    uint32_t count;
+    double start; // s
+    double rate;  // frames per second; 0 for a single sample
+} OgawaFrames;
+
+OgawaFrames ogawa_frames(const Ogawa *file, uint32_t sampling, uint32_t count);
+
+// The time (s) of a frame: exactly that of a sample if there is one.
+double ogawa_frame_time(const Ogawa *file, const OgawaFrames *frames, uint32_t i);

@@ -200,6 +200,8 @@ static void report_source(StrandsReport *report, const FormatSource *source, For
     report->samples = source->samples;
     report->rotation_was_deg = source->rotation_was_deg;
     memcpy(report->note, source->note, sizeof report->note);
+    report->flaws = source->flaws;
+    report->contents = source->contents;
 }
 
 static bool describe_first_defect(const StrandsReport *report, const char *name, char *text,
@@ -216,7 +218,10 @@ static bool describe_first_defect(const StrandsReport *report, const char *name,
 static Result refuse_defects(const StrandsReport *report, const char *name, Error *error)
 {
     char text[900];
-    if (!describe_first_defect(report, name, text, sizeof text)) return RESULT_OK;
+    if (!describe_first_defect(report, name, text, sizeof text)) {
+        if (!report->flaws) return RESULT_OK;
+        snprintf(text, sizeof text, "%.90s: %s", name, report->note);
+    }
     return error_set(error, RESULT_BAD_INPUT, "%s (refused because of --strict)", text);
 }
 
@@ -263,6 +268,9 @@ static Result check_wishes(const FormatSource *source, const char *name, const c
     if (source->wishes.array && !source->used_array)
         return error_set(error, RESULT_USAGE, "%s: --array has no effect: it is for .npz files",
                          name);
+    if (source->wishes.objects && !source->used_objects)
+        return error_set(error, RESULT_USAGE,
+                         "%s: --object has no effect: it is for USD and Alembic files", name);
     return RESULT_OK;
 }
 
@@ -277,6 +285,7 @@ static Result read_source(FormatSource *source, const char *name, const Bytes *b
                                            : reader_begin_binary(name, bytes, error);
     source->wishes.points_per_strand = options->points_per_strand;
     source->wishes.array = options->array && *options->array ? options->array : NULL;
+    source->wishes.objects = options->objects && *options->objects ? options->objects : NULL;
     Result result = format ? format->read(source, &reader) : refuse_unknown(&reader, xgen);
     if (result != RESULT_OK || !format) return result;
     TRY(check_wishes(source, name, format->name, error));

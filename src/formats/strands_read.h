@@ -14,6 +14,8 @@ typedef struct StrandsReadOptions {
     uint32_t seed;              // of the shuffle of files with `is sorted 0`
     uint32_t points_per_strand; // for files of points without strands; 0: find it
     const char *array;          // name of the positions in .npz; NULL or "": the usual names
+    const char *objects;        // which objects of a scene file; NULL or "": all
+                                // (format_wants_object)
 } StrandsReadOptions;
 
 // All frames of an animated file. A zeroed struct is empty.

@@ -99,7 +99,7 @@ bool strands_report_is_clean(const StrandsReport *report)
 {
     for (int kind = 0; kind < DEFECT_KINDS; kind++)
         if (report->defects[kind].count) return false;
-    return true;
+    return report->flaws == 0;
 }
 
 void strands_report_describe(const StrandsReport *report, const char *path, DefectKind kind,
@@ -144,6 +144,13 @@ uint32_t strands_report_print_mended(const StrandsReport *report, const char *pa
     }
     if (*report->note) {
         fprintf(stream, "%s: %s\n", quote(path).text, quote(report->note).text);
+        lines++;
+    }
+    const FormatContents *contents = &report->contents;
+    if (contents->unread_count) {
+        fprintf(stream, "%s: %u attribute%s of curves not read: %s\n", quote(path).text,
+                contents->unread_count, contents->unread_count == 1 ? "" : "s",
+                quote(contents->unread).text);
         lines++;
     }
     if (report->samples > 1 && !report->all_samples) {
@@ -217,6 +224,27 @@ static void print_notes(const StrandsReport *report, FILE *stream)
                 report->shared_roots);
 }
 
+void strands_report_print_contents(const StrandsReport *report, FILE *stream)
+{
+    const FormatContents *contents = &report->contents;
+    uint32_t listed = contents->count < FORMAT_OBJECTS ? contents->count : FORMAT_OBJECTS;
+    if (contents->unread_count)
+        fprintf(stream, "  not read  %u attribute%s: %s\n", contents->unread_count,
+                contents->unread_count == 1 ? "" : "s", quote(contents->unread).text);
+    if (contents->count < 2 && !contents->left_out) return;
+    for (uint32_t i = 0; i < listed; i++) {
+        const FormatObject *object = &contents->object[i];
+        fprintf(stream, "  object    %s: ", quote(object->path).text);
+        if (object->why)
+            fprintf(stream, "left out: %s\n", object->why);
+        else
+            fprintf(stream, "%u strand%s\n", object->strands, object->strands == 1 ? "" : "s");
+    }
+    if (contents->count > listed)
+        fprintf(stream, "  objects   %u more, %u of all left out\n", contents->count - listed,
+                contents->left_out);
+}
+
 void strands_report_print(const StrandsReport *report, const char *path, FILE *stream)
 {
     char carried[256];
@@ -236,6 +264,7 @@ void strands_report_print(const StrandsReport *report, const char *path, FILE *s
     fprintf(stream, "  carries   %s%s\n", *carried ? carried : "positions only",
             report->opaque ? "" : ", opacities");
     print_notes(report, stream);
+    strands_report_print_contents(report, stream);
     if (strands_report_is_clean(report)) fprintf(stream, "  defects   none\n");
     for (int kind = 0; kind < DEFECT_KINDS; kind++) {
         if (report->defects[kind].count == 0) continue;

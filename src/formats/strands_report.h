@@ -35,6 +35,8 @@ typedef struct StrandsReport {
     uint32_t samples;            // number in time, of which the first was read; 0 if not animated
     bool all_samples;            // all of them were read
     char note[FORMAT_NOTE_SIZE]; // choices and omissions of the reader; "" if none
+    uint32_t flaws;              // how many of these --strict refuses
+    FormatContents contents;     // objects and unread attributes of a scene file
     bool shuffled;               // the file said `is sorted 0`
     bool rotation_was_deg;       // a `rotation` was taken to be in degrees
     Defect defects[DEFECT_KINDS];
@@ -49,7 +51,7 @@ typedef struct StrandsReport {
 // Fills in the properties of the mended strands: counts, sizes, lengths, box, shared roots.
 Result strands_report_measure(StrandsReport *report, const Strands *strands, Error *error);
 
-// Whether there are no defects.
+// Whether there are no defects and no flaws.
 bool strands_report_is_clean(const StrandsReport *report);
 
 // Writes one line about a defect, without a newline: place, count, what is wrong and, if `mended`,
@@ -67,6 +69,10 @@ void strands_report_print_guess(const StrandsReport *report, const char *path, F
 
 // Whether strands_report_print_guess would print the same for both.
 bool strands_report_same_guess(const StrandsReport *a, const StrandsReport *b);
+
+// Prints the objects of a file that has several or leaves some out, and the attributes that are not
+// read; a line each.
+void strands_report_print_contents(const StrandsReport *report, FILE *stream);
 
 // Prints everything: kind, version, counts, lengths, box, unit and finally the defects.
 void strands_report_print(const StrandsReport *report, const char *path, FILE *stream);

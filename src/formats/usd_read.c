@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Reads `.usda`: all visible BasisCurves prims, in the order of the file, with the transforms of
-// their parents and, if the caller wants them, all times. Hidden prims are left out and counted.
-#include "formats/basis_curves.h"
+// Reads `.usda`: lists the BasisCurves prims, with the transforms of their parents, their samples
+// and attributes, also those that a parent hands down. scene_hair.h decides what is read.
 #include "formats/foreign.h"
-#include "formats/format.h"
+#include "formats/scene_hair.h"
 #include "formats/usd_stage.h"
 #include "formats/usd_write.h"
-#include "strands/strands_edit.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,6 +15,23 @@ static const char *const USD_NAMES[CURVES_ARRAYS] = {
     "primvars:st",       "primvars:st1", "primvars:thickness",    "primvars:mobility",
     "primvars:section"};
 
+// Other names under which programs write the arrays; of two that a prim has, the earlier one here
+// counts only if the name above is missing.
+static const struct {
+    const char *name;
+    CurvesArray array;
+    float scale; // 2 for radii
+} OTHER_NAMES[] = {
+    {"primvars:widths", CURVES_DIAMETERS, 1},
+    {"primvars:width", CURVES_DIAMETERS, 1},
+    {"primvars:pscale", CURVES_DIAMETERS, 2},
+    {"primvars:radius", CURVES_DIAMETERS, 2},
+    {"primvars:Cd", CURVES_COLOR, 1},
+    {"primvars:Alpha", CURVES_OPACITY, 1},
+    {"primvars:uv", CURVES_ST, 1},
+    {"primvars:groom_group_id", CURVES_GROUP, 1},
+};
+
 // A Material with the attributes of PhysicsCurvesDeformableMaterialAPI, in the file's units.
 typedef struct UsdMaterial {
     int prim;
@@ -24,38 +39,72 @@ typedef struct UsdMaterial {
     Fibre fibre;
 } UsdMaterial;
 
-// What is made of a prim: curves, or a material if they are NULL.
+// What is made of a prim: curves, or a material if they are NULL. The curves of a group (Xform,
+// Scope and the like) are only the arrays that it hands down.
 typedef struct UsdObject {
     BasisCurves *curves;
+    bool group, foreign;
+    const char *name;              // of a prim that holds no curves; NULL for others
+    uint32_t other[CURVES_ARRAYS]; // 1 + the number of the other name that gave the array
     UsdMaterial material;
 } UsdObject;
+
+// What a group hands down.
+typedef struct UsdGroup {
+    int prim;
+    BasisCurves curves;
+} UsdGroup;
 
 typedef struct Usd {
     Reader *reader;
     UsdStage stage;
     FormatWishes wishes;
+    FormatSource *source;
+    SceneHair hair;
     UsdMaterial *materials; // [material_count] of fibres
-    uint32_t material_count;
-    BasisCurves *curves; // [curves_count] only curves that have points
-    uint32_t curves_count, left_out, other_curves, meshes;
+    uint32_t material_count, group_count, meshes;
+    UsdGroup *groups; // [group_count]
 } Usd;
 
 // --- The schema of curves.
 
+// What prims that hold no curves are called in the list of a file's objects; NULL: they hold
+// nothing.
+static const char *name_of(const char *type)
+{
+    static const char *const names[][2] = {{"Mesh", "a mesh"},
+                                           {"Points", "points"},
+                                           {"Camera", "a camera"},
+                                           {"NurbsPatch", "a surface"},
+                                           {"PointInstancer", "instances"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        if (strcmp(type, names[i][0]) == 0) return names[i][1];
+    size_t length = strlen(type);
+    return length > 5 && strcmp(type + length - 5, "Light") == 0 ? "a light" : NULL;
+}
+
 static void *begin_object(void *to, const char *type, int prim)
 {
     Usd *usd = to;
-    usd->other_curves += strcmp(type, "NurbsCurves") == 0 || strcmp(type, "HermiteCurves") == 0;
-    usd->meshes += strcmp(type, "Mesh") == 0;
+    bool foreign = strcmp(type, "NurbsCurves") == 0 || strcmp(type, "HermiteCurves") == 0;
+    bool is_curves = strcmp(type, "BasisCurves") == 0 || foreign;
     bool is_material = strcmp(type, "Material") == 0;
-    if (strcmp(type, "BasisCurves") != 0 && !is_material) return NULL;
+    bool is_group = !*type || strcmp(type, "Xform") == 0 || strcmp(type, "Scope") == 0 ||
+                    strcmp(type, "SkelRoot") == 0;
+    usd->meshes += strcmp(type, "Mesh") == 0;
+    const char *name = name_of(type);
+    if (!is_curves && !is_material && !is_group && !name) return NULL;
     UsdObject *object = reader_malloc(usd->reader, 1, sizeof *object);
-    if (object) *object = (UsdObject){.material = {.prim = prim, .fibre.poisson = -1}};
-    if (!object || is_material) return object;
+    if (object)
+        *object = (UsdObject){.group = is_group,
+                              .foreign = foreign,
+                              .name = name,
+                              .material = {.prim = prim, .fibre.poisson = -1}};
+    if (!object || is_material || name) return object;
     object->curves = reader_malloc(usd->reader, 1, sizeof *object->curves);
     if (object->curves) {
-        *object->curves = (BasisCurves){
-            .names = USD_NAMES, .line = usd->reader->line, .prim = prim, .fibre.poisson = -1};
+        *object->curves =
+            (BasisCurves){.names = USD_NAMES, .line = usd->reader->line, .fibre.poisson = -1};
         return object;
     }
     free(object);
@@ -71,6 +120,25 @@ static void read_first(Reader *reader, UsdValues *only)
         free(only->value);
         *only = samples.sample[0];
         samples.count = 0;
+    }
+    usd_samples_destroy(&samples);
+}
+
+// The numbers of points of the curves, at the first sample; notes whether they change.
+static void read_counts(Reader *reader, BasisCurves *curves)
+{
+    UsdSamples samples = {0};
+    UsdValues *only = &curves->array[CURVES_COUNTS];
+    usd_samples_read(&samples, reader, true, true);
+    for (size_t i = 1; i < samples.count; ++i) {
+        const UsdValues *a = &samples.sample[0], *b = &samples.sample[i];
+        curves->changes = curves->changes || a->count != b->count ||
+                          memcmp(a->value, b->value, a->count * sizeof *a->value) != 0;
+    }
+    if (samples.count) {
+        free(only->value);
+        *only = samples.sample[0];
+        samples.sample[0] = (UsdValues){0};
     }
     usd_samples_destroy(&samples);
 }
@@ -106,12 +174,63 @@ static void read_thickness(Reader *reader, Fibre *fibre)
     free(values.value);
 }
 
+// Whether the name (with `length` characters before ".timeSamples") is that of an array, or of its
+// indices.
+static bool is_array(const char *array, const char *name, size_t length, bool *indices)
+{
+    size_t known = strlen(array);
+    if (strncmp(name, array, known) != 0) return false;
+    *indices = known + 8 == length && strncmp(name + known, ":indices", 8) == 0;
+    return known == length || *indices;
+}
+
+// Finds the array that has this name, or this other name.
+static bool find_array(const UsdObject *object, const char *name, size_t length, bool *indices,
+                       int *array, uint32_t *other)
+{
+    *other = 0;
+    for (*array = 0; *array < CURVES_ARRAYS; ++*array)
+        if (is_array(USD_NAMES[*array], name, length, indices)) return true;
+    for (uint32_t i = 0; i < sizeof OTHER_NAMES / sizeof *OTHER_NAMES; ++i) {
+        *array = (int)OTHER_NAMES[i].array;
+        *other = i + 1;
+        bool taken = object->curves->array[*array].line && object->other[*array] != *other;
+        if (is_array(OTHER_NAMES[i].name, name, length, indices)) return !taken;
+    }
+    return false;
+}
+
+static bool read_array(const Usd *usd, UsdObject *object, const char *name, size_t length,
+                       bool samples, char (**rate)[16])
+{
+    BasisCurves *curves = object->curves;
+    bool indices;
+    int array;
+    uint32_t other;
+    if (!find_array(object, name, length, &indices, &array, &other)) {
+        bool known = strncmp(name, "primvars:", 9) != 0 || strncmp(name, "primvars:skel:", 14) == 0;
+        if (!known && !object->group) format_source_unread(usd->source, name);
+        return false;
+    }
+    UsdValues *values = indices ? &curves->indices[array] : &curves->array[array];
+    if (samples)
+        read_first(usd->reader, values);
+    else
+        usd_text_read_values(usd->reader, values);
+    if (!indices) *rate = &curves->rate[array];
+    object->other[array] = other;
+    float scale = other && !indices ? OTHER_NAMES[other - 1].scale : 1;
+    for (size_t i = 0; i < values->count && scale != 1; ++i) values->value[i] *= scale;
+    return true;
+}
+
 static bool read_attribute(void *to, void *object, const char *name, size_t length, bool samples,
                            char (**rate)[16])
 {
     const Usd *usd = to;
     BasisCurves *curves = ((UsdObject *)object)->curves;
     Reader *reader = usd->reader;
+    if (((UsdObject *)object)->name) return false;
     if (!curves)
         return read_material(reader, &((UsdObject *)object)->material.fibre, name, samples);
     if (strcmp(name, "physics:thicknesses") == 0) {
@@ -131,20 +250,11 @@ static bool read_attribute(void *to, void *object, const char *name, size_t leng
         usd_samples_read(&curves->points, reader, samples, usd->wishes.all_frames);
         return true;
     }
-    for (int i = 0; i < CURVES_ARRAYS; ++i) {
-        size_t known = strlen(USD_NAMES[i]);
-        if (strncmp(name, USD_NAMES[i], known) != 0) continue;
-        bool indices = strncmp(name + known, ":indices", 8) == 0;
-        if (known != length && !(indices && known + 8 == length)) continue;
-        UsdValues *values = indices ? &curves->indices[i] : &curves->array[i];
-        if (samples)
-            read_first(reader, values);
-        else
-            usd_text_read_values(reader, values);
-        if (!indices) *rate = &curves->rate[i];
+    if (strncmp(name, "curveVertexCounts", length) == 0 && length == 17 && samples) {
+        read_counts(reader, curves);
         return true;
     }
-    return false;
+    return read_array(usd, object, name, length, samples, rate);
 }
 
 static float *find_number(void *object, const char *word)
@@ -157,26 +267,75 @@ static float *find_number(void *object, const char *word)
                                                  : NULL;
 }
 
-static void add_curves(Usd *usd, BasisCurves *curves)
+static void set_why(const Usd *usd, SceneObject *object)
+{
+    const UsdStage *stage = &usd->stage;
+    object->skinned = usd_stage_skins(stage, object->node) && !object->curves.points.timed;
+    object->why = usd_stage_lacks(stage, object->node)       ? SCENE_ABSENT
+                  : usd_stage_hides(stage, object->node)     ? SCENE_HIDDEN
+                  : usd_stage_instances(stage, object->node) ? SCENE_SCATTERED
+                                                             : SCENE_READ;
+}
+
+static void add_curves(Usd *usd, UsdObject *object, int prim)
+{
+    BasisCurves *curves = object->curves;
+    SceneObject *added = scene_hair_add(&usd->hair, usd->stage.path, curves);
+    if (!added) return;
+    if (object->foreign) strcpy(added->curves.type, "foreign");
+    *curves = (BasisCurves){0};
+    added->node = prim;
+    if (added->curves.points.count) added->place = added->curves.points.sample[0].line;
+    set_why(usd, added);
+    // NURBS and Hermite curves count whether they have points or not.
+    if (object->foreign && added->why == SCENE_READ) added->why = SCENE_FOREIGN;
+}
+
+// Keeps the arrays of a group that are constant, and so hold for all that is below it
+// (UsdGeomPrimvarsAPI::FindPrimvarWithInheritance).
+static void add_group(Usd *usd, BasisCurves *curves, int prim)
+{
+    bool any = false;
+    for (int i = CURVES_DIAMETERS; i < CURVES_ARRAYS; ++i)
+        any = any || (curves->array[i].count &&
+                      (!*curves->rate[i] || strcmp(curves->rate[i], "constant") == 0));
+    if (!any || !reader_ok(usd->reader)) return;
+    UsdGroup *more =
+        reader_realloc(usd->reader, usd->groups, (uint64_t)usd->group_count + 1, sizeof *more);
+    if (!more) return;
+    usd->groups = more;
+    usd->groups[usd->group_count++] = (UsdGroup){prim, *curves};
+    *curves = (BasisCurves){0};
+}
+
+static const UsdGroup *find_group(const Usd *usd, int prim)
+{
+    for (uint32_t i = 0; i < usd->group_count; ++i)
+        if (usd->groups[i].prim == prim) return &usd->groups[i];
+    return NULL;
+}
+
+// Gives the curves the constant primvars of their nearest parents.
+static void hand_down(Usd *usd, SceneObject *object)
 {
     Reader *reader = usd->reader;
-    if (!reader_ok(reader) || curves->points.count == 0 || curves->points.sample[0].count == 0)
-        return; // an `over`, or no curves
-    if (usd_stage_hides(&usd->stage, curves->prim)) {
-        ++usd->left_out;
-        return;
+    for (int p = usd->stage.prim[object->node].parent; p >= 0; p = usd->stage.prim[p].parent) {
+        if (!reader_work(reader, usd->group_count, 3)) return;
+        const UsdGroup *group = find_group(usd, p);
+        for (int i = CURVES_DIAMETERS; group && i < CURVES_ARRAYS; ++i) {
+            const UsdValues *from = &group->curves.array[i];
+            UsdValues *to = &object->curves.array[i];
+            const char *rate = group->curves.rate[i];
+            if (to->line || !from->count || (*rate && strcmp(rate, "constant") != 0)) continue;
+            float *value = reader_malloc(reader, from->count, sizeof *value);
+            if (!value) return;
+            memcpy(value, from->value, from->count * sizeof *value);
+            *to = *from;
+            to->value = value;
+            to->room = to->count;
+            strcpy(object->curves.rate[i], "constant");
+        }
     }
-    if (usd_stage_instances(&usd->stage, curves->prim))
-        reader_fail(reader, "curves of a PointInstancer are not read: %s", USD_FLATTEN);
-    BasisCurves *more =
-        reader_realloc(reader, usd->curves, ((size_t)usd->curves_count + 1), sizeof *more);
-    if (!more) {
-        reader_fail_memory(reader);
-        return;
-    }
-    usd->curves = more;
-    usd->curves[usd->curves_count++] = *curves;
-    *curves = (BasisCurves){0};
 }
 
 static void add_material(Usd *usd, const UsdMaterial *material)
@@ -196,8 +355,11 @@ static void add_material(Usd *usd, const UsdMaterial *material)
 static void end_object(void *to, void *ended)
 {
     UsdObject *object = ended;
-    if (object->curves) {
-        add_curves(to, object->curves);
+    if (object->name) {
+        format_source_list(((Usd *)to)->source, ((Usd *)to)->stage.path, 0, object->name);
+    } else if (object->curves) {
+        (object->group ? add_group(to, object->curves, object->material.prim)
+                       : add_curves(to, object, object->material.prim));
         basis_curves_destroy(object->curves);
         free(object->curves);
     } else {
@@ -206,7 +368,32 @@ static void end_object(void *to, void *ended)
     free(object);
 }
 
-static const UsdSchema CURVES = {begin_object, read_attribute, find_number, end_object};
+// The curves of a prim that another one repeats; a prim with points of its own keeps them.
+static void repeat_object(void *to, int of, int prim, const char *path)
+{
+    Usd *usd = to;
+    int from = -1;
+    if (!reader_work(usd->reader, usd->hair.count, 3)) return;
+    for (uint32_t i = 0; i < usd->hair.count; ++i) {
+        SceneObject *object = &usd->hair.object[i];
+        if (object->node == prim && object->curves.points.count) return;
+        if (object->node == of && object->curves.points.count) from = (int)i;
+    }
+    if (from < 0) return;
+    BasisCurves copy;
+    basis_curves_copy(&copy, &usd->hair.object[from].curves, usd->reader);
+    SceneObject *added = scene_hair_add(&usd->hair, path, &copy);
+    if (!added) {
+        basis_curves_destroy(&copy);
+        return;
+    }
+    added->node = prim;
+    added->place = usd->hair.object[from].place;
+    set_why(usd, added);
+}
+
+static const UsdSchema CURVES = {"BasisCurves", begin_object, read_attribute,
+                                 find_number,   end_object,   repeat_object};
 
 // --- Materials.
 
@@ -222,10 +409,11 @@ static void bind_materials(Usd *usd)
     double kilograms = usd->stage.mass_unit > 0 ? (double)usd->stage.mass_unit : 1;
     if (usd->material_count)
         qsort(usd->materials, usd->material_count, sizeof *usd->materials, compare_paths);
-    for (uint32_t i = 0; i < usd->curves_count && usd->material_count; ++i) {
-        Fibre *fibre = &usd->curves[i].fibre;
+    for (uint32_t i = 0; i < usd->hair.count && usd->material_count; ++i) {
+        Fibre *fibre = &usd->hair.object[i].curves.fibre;
         if (!reader_work(usd->reader, 64, 10)) return; // its parents
-        UsdMaterial wanted = {.path = usd_stage_find_material(&usd->stage, usd->curves[i].prim)};
+        UsdMaterial wanted = {.path =
+                                  usd_stage_find_material(&usd->stage, usd->hair.object[i].node)};
         const UsdMaterial *found = bsearch(&wanted, usd->materials, usd->material_count,
                                            sizeof *usd->materials, compare_paths);
         if (!found) continue;
@@ -237,140 +425,80 @@ static void bind_materials(Usd *usd)
 
 // --- Times.
 
-// Without all_frames only the first sample of the points was read, but all samples of the
-// transforms. Returns the number of times in the file.
-static uint32_t find_times(Usd *usd, FormatSource *source, UsdTimes *times)
+// Without all_frames only the first frame of the points was read, but all samples of the
+// transforms.
+static void find_times(void *to, SceneHair *hair, FormatSource *source)
 {
-    for (uint32_t i = 0; i < usd->curves_count; ++i)
-        usd_stage_add_times(&usd->stage, usd->curves[i].prim, &usd->curves[i].points, times);
-    usd_times_sort(times);
-    uint32_t in_file = times->count;
-    for (uint32_t i = 0; i < usd->curves_count; ++i)
-        if (usd->curves[i].points.in_file > in_file)
-            in_file = (uint32_t)usd->curves[i].points.in_file;
-    if (usd->wishes.all_frames && times->count > 1) usd_times_even_out(times, usd->reader);
-    if (times->evened)
+    Usd *usd = to;
+    UsdTimes times = {.step = 1};
+    size_t in_file = 0;
+    for (uint32_t i = 0; i < hair->count; ++i) {
+        const SceneObject *object = &hair->object[i];
+        if (object->why != SCENE_READ) continue;
+        usd_stage_add_times(&usd->stage, object->node, &object->curves.points, &times);
+        if (object->curves.points.in_file > in_file) in_file = object->curves.points.in_file;
+    }
+    usd_times_sort(&times);
+    if (times.count > in_file) in_file = times.count;
+    if (hair->wishes.all_frames && times.count > 1) usd_times_even_out(&times, usd->reader);
+    if (times.evened)
         format_source_note(source,
                            "time samples at unequal intervals: frames are interpolated at equal "
                            "ones, from time code %g to %g",
-                           times->time[0], times->time[times->count - 1]);
-    return in_file;
+                           times.time[0], times.time[times.count - 1]);
+    source->samples = hair->wishes.all_frames && times.count > 1 ? times.count : (uint32_t)in_file;
+    source->first_frame = times.first;
+    source->fps = usd_stage_rate(&usd->stage) / (times.step > 0 ? times.step : 1);
+    hair->time = times.time;
+    hair->time_count = times.count;
 }
 
-// --- Strands.
-
-// Writes the positions of all curves at a time, one set after the other.
-static void place_all(const Usd *usd, const Strands *sets, double time, float (*to)[3])
+static void find_matrix(void *to, int node, double time, double matrix[4][4])
 {
-    for (uint32_t i = 0; i < usd->curves_count && reader_ok(usd->reader); ++i) {
-        double matrix[4][4];
-        usd_stage_find_matrix(&usd->stage, usd->curves[i].prim, time, matrix);
-        if (!reader_work(usd->reader, (uint64_t)sets[i].vertex_count + sets[i].strand_count, 200))
-            return;
-        basis_curves_place(&usd->curves[i], &sets[i], time, matrix, to);
-        to += sets[i].vertex_count;
-    }
+    usd_stage_find_matrix(&((Usd *)to)->stage, node, time, matrix);
 }
 
-static Result make_source(const Usd *usd, FormatSource *source, const Strands *sets)
+static void note_stage(const Usd *usd, FormatSource *source)
 {
-    Reader *reader = usd->reader;
-    Strands all;
-    if (strands_join(&all, sets, usd->curves_count, NULL) != RESULT_OK)
-        return reader_fail_memory(reader);
-    if (format_source_create(source, reader, all.strand_count, all.vertex_count) != RESULT_OK) {
-        strands_destroy(&all);
-        return reader->result;
-    }
-    strands_destroy(&source->strands);
-    source->strands = all;
-    source->vertex_line = reader_malloc(reader, all.vertex_count, sizeof *source->vertex_line);
-    if (!source->vertex_line) return reader_fail_memory(reader);
-    for (uint32_t i = 0, s = 0, v = 0; i < usd->curves_count; ++i) {
-        uint32_t line = usd->curves[i].points.sample[0].line;
-        for (uint32_t k = 0; k < sets[i].strand_count; ++k) source->place[s++] = line;
-        for (uint32_t k = 0; k < sets[i].vertex_count; ++k) source->vertex_line[v++] = line;
-    }
-    return RESULT_OK;
-}
-
-static Result make_frames(const Usd *usd, FormatSource *source, const Strands *sets,
-                          const UsdTimes *times)
-{
-    Reader *reader = usd->reader;
-    size_t each = source->strands.vertex_count;
-    source->frames = reader_malloc_frames(reader, times->count, each);
-    for (uint32_t f = 0; f < times->count && reader_ok(reader); ++f)
-        place_all(usd, sets, times->time[f], source->frames + f * each);
-    source->samples = times->count;
-    source->first_frame = times->first;
-    return reader->result;
-}
-
-static Result make_strands(Usd *usd, FormatSource *source, Strands *sets, UsdTimes *times)
-{
-    Reader *reader = usd->reader;
-    uint32_t cubic = 0;
-    bind_materials(usd);
-    for (uint32_t i = 0; i < usd->curves_count && reader_ok(reader); ++i) {
-        basis_curves_make(&usd->curves[i], reader, usd->wishes.points_per_strand, &sets[i]);
-        cubic += strcmp(usd->curves[i].type, "linear") != 0;
-    }
-    if (!reader_ok(reader)) return reader->result;
-    source->used_points = cubic > 0;
-    uint32_t in_file = find_times(usd, source, times);
-    double first = times->count ? times->time[0] : 0;
-    TRY(reader->result);
-    for (uint32_t i = 0; i < usd->curves_count; ++i) {
-        double matrix[4][4];
-        usd_stage_find_matrix(&usd->stage, usd->curves[i].prim, first, matrix);
-        TRY(reader->result);
-        basis_curves_scale(&sets[i], matrix);
-    }
-    TRY(make_source(usd, source, sets));
-    place_all(usd, sets, first, source->strands.position);
-    source->samples = in_file;
-    if (usd->wishes.all_frames && times->count > 1) return make_frames(usd, source, sets, times);
-    return reader->result;
-}
-
-static void note_choices(const Usd *usd, FormatSource *source)
-{
-    uint32_t idle = usd_stage_count_idle(&usd->stage);
-    if (usd->left_out)
-        format_source_note(source,
-                           "%u prims of curves are left out: they are inactive, invisible, "
-                           "abstract or of purpose guide or proxy",
-                           usd->left_out);
-    if (usd->other_curves)
-        format_source_note(source, "%u prims of NURBS or Hermite curves are left out",
-                           usd->other_curves);
-    if (idle) format_source_note(source, "%u transforms without xformOpOrder have no effect", idle);
+    uint32_t idle = usd_stage_count_idle(&usd->stage), empty = usd_stage_count_empty(&usd->stage);
+    uint32_t arcs = usd->stage.skipped_arcs;
+    if (idle)
+        format_source_note(source, "%u transform%s without xformOpOrder %s no effect", idle,
+                           idle == 1 ? "" : "s", idle == 1 ? "has" : "have");
+    if (empty)
+        format_source_flaw(source, "%u operation%s of xformOpOrder %s no value: no effect", empty,
+                           empty == 1 ? "" : "s", empty == 1 ? "has" : "have");
+    if (arcs)
+        format_source_flaw(source,
+                           "%u reference%s, inherits, variants or the like of prims that hold no "
+                           "hair are not read",
+                           arcs, arcs == 1 ? "" : "s");
 }
 
 static Result read(FormatSource *source, Reader *reader)
 {
-    Usd usd = {.reader = reader, .wishes = source->wishes};
-    UsdTimes times = {.step = 1};
+    Usd usd = {.reader = reader, .wishes = source->wishes, .source = source};
+    usd.hair = (SceneHair){.reader = reader,
+                           .wishes = source->wishes,
+                           .file = &usd,
+                           .find_matrix = find_matrix,
+                           .find_times = find_times};
+    source->used_objects = true;
     usd_stage_read(&usd.stage, reader, &CURVES, &usd);
-    note_choices(&usd, source);
-    if (reader_ok(reader) && usd.curves_count == 0)
-        reader_fail(reader,
-                    *source->note ? "no BasisCurves with points (%s)"
-                    : usd.meshes  ? "meshes without hair: " FOREIGN_WANTS_HAIR "%s"
-                                  : "no BasisCurves with points%s",
-                    source->note);
-    Strands *sets = reader_calloc(reader, (size_t)usd.curves_count + 1, sizeof *sets);
-    if (reader_ok(reader)) make_strands(&usd, source, sets, &times);
+    for (uint32_t i = 0; i < usd.hair.count && usd.group_count && reader_ok(reader); ++i)
+        hand_down(&usd, &usd.hair.object[i]);
+    if (reader_ok(reader)) bind_materials(&usd);
+    if (reader_ok(reader)) note_stage(&usd, source);
+    if (reader_ok(reader))
+        scene_hair_make(&usd.hair, source,
+                        usd.meshes ? "meshes without hair: " FOREIGN_WANTS_HAIR
+                                   : "no BasisCurves with points");
     source->unit = usd.stage.unit;
     source->up = usd.stage.up_z ? UP_Z : UP_Y;
-    source->fps = usd_stage_rate(&usd.stage) / (times.step > 0 ? times.step : 1);
-    for (uint32_t i = 0; sets && i < usd.curves_count; ++i) strands_destroy(&sets[i]);
-    free(sets);
-    usd_times_destroy(&times);
+    scene_hair_destroy(&usd.hair);
+    for (uint32_t i = 0; i < usd.group_count; ++i) basis_curves_destroy(&usd.groups[i].curves);
+    free(usd.groups);
     free(usd.materials);
-    for (uint32_t i = 0; i < usd.curves_count; ++i) basis_curves_destroy(&usd.curves[i]);
-    free(usd.curves);
     usd_stage_destroy(&usd.stage);
     return reader->result;
 }

@@ -40,7 +40,15 @@ void usd_samples_read(UsdSamples *samples, Reader *reader, bool timed, bool all)
             reader_fail(reader, "time sample %g: expected a time after that of the previous sample",
                         time);
         last = time;
-        if (samples->in_file > 0 && !all)
+        // Of several samples a frame, as for motion blur, a whole one is the first frame.
+        bool better = samples->count == 1 && time == floor(time) &&
+                      time < samples->sample[0].time + 1 &&
+                      samples->sample[0].time != floor(samples->sample[0].time);
+        if (!all && better) {
+            free(samples->sample[0].value);
+            samples->count = 0;
+        }
+        if (samples->count > 0 && !all)
             usd_text_skip_value(reader);
         else if (!add_sample(samples, reader, time))
             return;

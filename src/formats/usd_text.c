@@ -16,12 +16,26 @@ void usd_text_step(Reader *reader)
     reader->at += usd_text_here(reader) != 0;
 }
 
+// Skips "/* ... */".
+static void skip_comment(Reader *reader)
+{
+    for (int i = 0; i < 2; ++i) usd_text_step(reader);
+    while (usd_text_here(reader) &&
+           !(usd_text_here(reader) == '*' && reader->data[reader->at + 1] == '/'))
+        usd_text_step(reader);
+    if (!usd_text_here(reader)) reader_fail(reader, "a comment is not closed: expected */");
+    for (int i = 0; i < 2; ++i) usd_text_step(reader);
+}
+
 char usd_text_peek(Reader *reader, bool line)
 {
     for (;;) {
         char c = usd_text_here(reader);
-        if (c == '#')
+        char next = c == '/' ? (char)reader->data[reader->at + 1] : 0;
+        if (c == '#' || next == '/')
             while (usd_text_here(reader) && usd_text_here(reader) != '\n') usd_text_step(reader);
+        else if (next == '*')
+            skip_comment(reader);
         else if (c == ' ' || c == '\t' || c == '\r' || c == ';' || (c == '\n' && !line))
             usd_text_step(reader);
         else
@@ -96,19 +110,33 @@ void usd_text_read_string(Reader *reader, char text[USD_WORD_SIZE])
     if (found < marks) reader_fail(reader, "a string is not closed: expected a quotation mark");
 }
 
+// Skips a path, <...>, or an asset, @...@ or @@@...@@@, in which \@@@ is no end.
+static void skip_quoted(Reader *reader, char c)
+{
+    const uint8_t *at = reader->data + reader->at;
+    int marks = c == '@' && at[1] == '@' && at[2] == '@' ? 3 : 1, found = 0;
+    char end = c == '<' ? '>' : c;
+    for (int i = 0; i < marks; ++i) usd_text_step(reader);
+    while (found < marks && (c = usd_text_here(reader))) {
+        found = c == end ? found + 1 : 0;
+        usd_text_step(reader);
+        for (int i = 0; marks == 3 && c == '\\' && i < 3 && usd_text_here(reader) == end; ++i)
+            usd_text_step(reader);
+    }
+    while (marks == 3 && usd_text_here(reader) == end) usd_text_step(reader); // @@@a@@@@: "a@"
+    if (found < marks) reader_fail(reader, "a path is not closed: expected '%c'", end);
+}
+
 void usd_text_skip_value(Reader *reader)
 {
     char text[USD_WORD_SIZE], c = usd_text_peek(reader, false);
     int depth = 0;
     do {
         c = usd_text_peek(reader, false);
-        char end = c == '<' ? '>' : c == '@' ? '@' : 0;
         if (c == '"' || c == '\'') {
             usd_text_read_string(reader, text);
-        } else if (end) {
-            do usd_text_step(reader);
-            while (usd_text_here(reader) && usd_text_here(reader) != end);
-            usd_text_step(reader);
+        } else if (c == '<' || c == '@') {
+            skip_quoted(reader, c);
         } else if (c && strchr("([{", c)) {
             ++depth, usd_text_step(reader);
         } else if (c && strchr(")]}", c)) {

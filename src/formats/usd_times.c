@@ -42,12 +42,13 @@ void usd_times_even_out(UsdTimes *times, Reader *reader)
     bool whole = even && fabs(step - 1) < 1e-9 && first == floor(first);
     times->first = whole && first >= 0 && first < 1e7 ? (int)first : 0;
     double from = ceil(first), count = floor(last) - from + 1;
-    if (even || !(count >= 2 && count <= 1e6)) return;
+    bool shutter = even && step < 1 - 1e-6; // several samples a frame, as for motion blur
+    if ((even && !shutter) || !(count >= 2 && count <= 1e6)) return;
     times->count = 0;
     for (uint32_t i = 0; i < (uint32_t)count; ++i) usd_times_add(times, reader, from + i);
     times->first = from >= 0 ? (int)from : 0;
     times->step = 1;
-    times->evened = true;
+    times->evened = !even;
 }
 
 void usd_times_destroy(UsdTimes *times)

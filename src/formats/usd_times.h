@@ -18,7 +18,7 @@ void usd_times_add(UsdTimes *times, Reader *reader, double time);
 // Sorts the times and removes duplicates.
 void usd_times_sort(UsdTimes *times);
 
-// For at least two ascending times. Unevenly spaced times are replaced by all whole time codes from
-// the first to the last.
+// For at least two ascending times. Unevenly spaced times, and those less than one time code apart,
+// are replaced by all whole time codes from the first to the last.
 void usd_times_even_out(UsdTimes *times, Reader *reader);
 void usd_times_destroy(UsdTimes *times);

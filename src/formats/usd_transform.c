@@ -79,12 +79,19 @@ void usd_transform_read_op(UsdTransform *transform, Reader *reader, const char *
     op->track.count = 0;
     op->track.timed = timed;
     if (!timed) {
-        add_sample(&op->track, reader, 0);
+        if (usd_text_peek(reader, false) == 'N') // None
+            usd_text_skip_value(reader);
+        else
+            add_sample(&op->track, reader, 0);
         return;
     }
     double time;
     usd_text_expect(reader, '{');
-    while (usd_text_next_sample(reader, &time)) add_sample(&op->track, reader, time);
+    while (usd_text_next_sample(reader, &time))
+        if (usd_text_peek(reader, false) == 'N')
+            usd_text_skip_value(reader);
+        else
+            add_sample(&op->track, reader, time);
 }
 
 void usd_transform_read_order(UsdTransform *transform, Reader *reader)
@@ -100,6 +107,20 @@ void usd_transform_read_order(UsdTransform *transform, Reader *reader)
         usd_text_read_string(reader, more[transform->order_count++]);
         usd_text_take(reader, ',');
     }
+}
+
+uint32_t usd_transform_count_empty(const UsdTransform *transform)
+{
+    uint32_t empty = 0;
+    for (size_t i = 0; i < transform->order_count; ++i) {
+        const char *name = transform->order[i];
+        if (strncmp(name, INVERT, strlen(INVERT)) == 0) name += strlen(INVERT);
+        bool found = strcmp(name, RESET) == 0;
+        for (size_t k = 0; k < transform->op_count && !found; ++k)
+            found = strcmp(transform->op[k].name, name) == 0 && transform->op[k].track.count > 0;
+        empty += !found;
+    }
+    return empty;
 }
 
 void usd_transform_destroy(UsdTransform *transform)
@@ -286,10 +307,10 @@ void usd_transform_evaluate(UsdTransform *transform, Reader *reader, double time
         if (inverse) name += strlen(INVERT);
         const UsdOp *op = transform->named[i];
         reader->line = op ? op->line : transform->line;
-        if (!op || op->track.count == 0)
-            reader_fail(reader, "xformOpOrder names '%.60s', which has no value", name);
-        else if (strncmp(name, PREFIX, strlen(PREFIX)) != 0 ||
-                 !set_matrix(step, name + strlen(PREFIX), &op->track, time))
+        if ((!op || op->track.count == 0) && strncmp(name, PREFIX, strlen(PREFIX)) == 0)
+            continue; // the identity, as UsdGeomXformOp::GetOpTransform has it
+        if (strncmp(name, PREFIX, strlen(PREFIX)) != 0 ||
+            !set_matrix(step, name + strlen(PREFIX), &op->track, time))
             reader_fail(reader, "'%.60s': unknown kind of transform", name);
         else if (inverse && !invert(step))
             reader_fail(reader, "'%.60s' has no inverse", name);

@@ -36,8 +36,11 @@ void usd_transform_read_op(UsdTransform *transform, Reader *reader, const char *
 void usd_transform_read_order(UsdTransform *transform, Reader *reader);
 void usd_transform_destroy(UsdTransform *transform);
 
+// The number of operations in the order that have no value; they are identities.
+uint32_t usd_transform_count_empty(const UsdTransform *transform);
+
 // Computes the matrix at a time; `reset`: parent transforms do not apply. Fails the reader for
-// unknown or missing operations, and if a requested inverse does not exist.
+// unknown operations, and if a requested inverse does not exist.
 void usd_transform_evaluate(UsdTransform *transform, Reader *reader, double time,
                             double matrix[4][4], bool *reset);
 

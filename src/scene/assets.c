@@ -162,6 +162,8 @@ static Result load_sequence(const BodyLoad *load, const MeshSequenceOptions *opt
     Result result =
         mesh_sequence_read(&sequence, load->mesh, &rest, load->body->params.mesh, options, error);
     bool deforms = sequence.times.count > 1 || rest.vertex_count > 0;
+    if (result == RESULT_OK && load->messages && *sequence.note)
+        fprintf(load->messages, "%s: %s\n", quote(load->body->params.mesh).text, sequence.note);
     if (result == RESULT_OK && deforms) result = bind_hair(load, &sequence, &rest, error);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&rest);

@@ -206,7 +206,7 @@ static void unreals_attributes_are_read(void **state)
     assert_int_equal(strands_read(&strands, "tests/data/unreal.abc", &options, &report, NULL),
                      RESULT_OK);
     assert_int_equal(strands.strand_count, 5);
-    assert_non_null(strstr(report.note, "1 guides are left out"));
+    assert_non_null(strstr(report.note, "1 guide left out (groom_guide)"));
     const float group[] = {0, 1, 0, 5, 5};
     assert_memory_equal(strands.strand_group, group, sizeof group);
     assert_float_equal(strands.position[4][1], 0.01, 1e-9);
@@ -295,16 +295,27 @@ static void what_is_no_groom_says_what_it_is(void **state)
     bytes_destroy(&mesh);
 }
 
-// The four numbers of groom_guide take 24 bytes; their count is at byte 700.
-static void attributes_of_other_counts_than_the_strands_are_refused(void **state)
+// The four numbers of groom_guide take 24 bytes; their count is at byte 700. The first object is
+// left out, the second one is read.
+static void an_object_whose_guides_do_not_fit_is_left_out(void **state)
 {
     (void)state;
     Bytes bytes = read_file("tests/data/unreal.abc");
+    Strands strands;
+    StrandsReport report;
+    StrandsReadOptions strict = METRES;
+    strict.strict = true;
     assert_int_equal(bytes.data[700], 24);
     bytes.data[700] = 20;
-    refuse(bytes.data, bytes.size, "groom_guide: 2 numbers: expected 4, one for each curve");
-    bytes.data[700] = 16;
-    refuse(bytes.data, bytes.size, "groom_guide: 0 numbers: expected 4, one for each curve");
+    assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &METRES, &report, NULL),
+                     RESULT_OK);
+    assert_int_equal(strands.strand_count, 2);
+    assert_non_null(strstr(report.note, "groom_guide: 2 numbers: expected 4, one for each curve"));
+    assert_int_equal(report.flaws, 1);
+    assert_int_equal(report.contents.left_out, 1);
+    strands_destroy(&strands);
+    assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &strict, NULL, NULL),
+                     RESULT_BAD_INPUT);
     bytes_destroy(&bytes);
 }
 
@@ -322,9 +333,60 @@ static void widths_that_only_some_objects_have_are_left_out_with_a_line(void **s
     assert_int_equal(reading_copy(&strands, bytes.data, bytes.size, &METRES, &report, NULL),
                      RESULT_OK);
     assert_null(strands.vertex_thickness);
-    assert_non_null(strstr(report.note, "widths are left out"));
+    assert_non_null(
+        strstr(report.note, "left out, since not all objects have it: thickness of vertices"));
     strands_destroy(&strands);
     bytes_destroy(&bytes);
+}
+
+// Files of Alembic 1.8: what each holds besides two good strands, and how many strands are read.
+static void what_other_programs_write_is_read(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *says;
+        uint32_t strands, features;
+    } cases[] = {
+        {"instances", "", 4, STRANDS_HAS_GROUP}, // an instance of two strands
+        {"shown", "", 2, 0},                     // they say "visible" below a hidden parent
+        {"later", "", 2, 0},                     // hidden in the first sample
+        {"hidden", "all curves are hidden", 2, 0},
+        {"nurbs", "(NURBS or Hermite curves", 2, 0},
+        {"bezier5", "1 cubic curve of too few points", 3, 0},
+        {"names", "", 3, STRANDS_HAS_GROUP},        // groom_group_name
+        {"group_vertex", "", 3, STRANDS_HAS_GROUP}, // groom_group_id for each vertex
+        {"rgba", "", 2, STRANDS_HAS_COLOR},
+        {"uv3", "", 2, STRANDS_HAS_STRAND_UV},
+        {"wide", "", 2, STRANDS_HAS_VERTEX_THICKNESS}, // a width among .arbGeomParams
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char path[100];
+        StrandsReport report;
+        snprintf(path, sizeof path, "tests/data/alembic/%s.abc", cases[i].name);
+        Strands strands = read_data(path, NULL, &report);
+        if (strands.strand_count != cases[i].strands || report.features != cases[i].features ||
+            !strstr(report.note, cases[i].says))
+            fail_msg("%s: %u strands, features %u, '%s'", path, strands.strand_count,
+                     report.features, report.note);
+        strands_destroy(&strands);
+    }
+}
+
+// 24 frames a second, each with samples a quarter of a frame before, at, and after it. The second
+// vertex of sample k is at x = 0.01 k.
+static void samples_for_motion_blur_give_whole_frames(void **state)
+{
+    (void)state;
+    StrandsReport report;
+    StrandsFrames frames;
+    Strands strands = read_data("tests/data/alembic/shutter.abc", &frames, &report);
+    assert_int_equal(frames.count, 3);
+    assert_int_equal(frames.first, 0);
+    assert_float_equal(frames.fps, 24, 1e-9);
+    for (uint32_t f = 0; f < 3; ++f)
+        assert_true(frames.position[f * strands.vertex_count + 1][0] == 0.01f * (float)(3 * f + 1));
+    strands_frames_destroy(&frames);
+    strands_destroy(&strands);
 }
 
 int main(void)
@@ -342,7 +404,9 @@ int main(void)
         TEST(cut_and_damaged_files_are_refused_in_one_line),
         TEST(what_is_no_groom_says_what_it_is),
         TEST(widths_that_only_some_objects_have_are_left_out_with_a_line),
-        TEST(attributes_of_other_counts_than_the_strands_are_refused),
+        TEST(what_other_programs_write_is_read),
+        TEST(samples_for_motion_blur_give_whole_frames),
+        TEST(an_object_whose_guides_do_not_fit_is_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

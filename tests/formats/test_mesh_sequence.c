@@ -352,7 +352,7 @@ static void meshes_of_usd_that_cannot_be_taken_are_refused_with_their_line(void 
         {USD_FACES "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n"
                    "int[] primvars:skel:jointIndices = [0, 0, 0]\n",
          "a mesh that a skeleton moves: expected baked points"},
-        {"token visibility = \"invisible\"\n" USD_FACES
+        {"}\nclass Mesh \"C\"\n{\n" USD_FACES
          "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n",
          "no visible Mesh prim"},
         {"", "no Mesh prim with points"},

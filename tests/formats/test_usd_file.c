@@ -4,6 +4,7 @@
 #include "formats/format.h"
 #include "formats/strands_read.h"
 #include "formats/usd_write.h"
+#include "support/reading.h"
 #include "support/temporary.h"
 
 #include <math.h>
@@ -354,19 +355,13 @@ static void what_would_give_other_hair_is_refused_with_its_line(void **state)
         const char *text, *says;
     } cases[] = {
         {"#usda 1.0\n", "FILE:2: no BasisCurves"},
-        {CURVES("uniform token[] xformOpOrder = [\"xformOp:scale\"]\n"),
-         "FILE:7: xformOpOrder names 'xformOp:scale', which has no value"},
-        {CURVES("uniform token[] xformOpOrder = [\"a\nb\"]\n"), "xformOpOrder names 'a\\nb'"},
         {CURVES("float xformOp:shear = 3\nuniform token[] xformOpOrder = [\"xformOp:shear\"]\n"),
          "FILE:7: 'xformOp:shear': unknown kind of transform"},
         {CURVES("float3 xformOp:scale = (1, 0, 1)\n"
                 "uniform token[] xformOpOrder = [\"!invert!xformOp:scale\"]\n"),
          "FILE:7: 'xformOp:scale' has no inverse"},
-        {CURVES("uniform token type = \"cubic\"\n"), "FILE:5: a cubic curve of 2 points"},
         {CURVES("uniform token type = \"cubic\"\nuniform token basis = \"hermite\"\n"),
-         "FILE:2: curves of basis hermite"},
-        {CURVES("uniform token visibility = \"invisible\"\n"),
-         "no BasisCurves with points (1 prims"},
+         "1 object of curves left out (NURBS or Hermite curves, or of an unknown basis)"},
         {CURVES("point3f[] points.timeSamples = { 1: [(0, 0, 0), (0, 1, 0)], 0: [] }\n"),
          "FILE:7: time sample 0: expected a time after"},
         {CURVES("point3f[] points.timeSamples = { x: [] }\n"), "FILE:7: expected a time, got 'x'"},
@@ -377,11 +372,8 @@ static void what_would_give_other_hair_is_refused_with_its_line(void **state)
         {"#usda 1.0\ndef \"x\"\n{\nvariantSet \"v\" = {\n}\n}\n", "FILE:4: variants are not read"},
         {"#usda 1.0\ndef PointInstancer \"p\"\n{\ndef BasisCurves \"x\"\n{\n"
          "point3f[] points = [(0, 0, 0)]\n}\n}\n",
-         "curves of a PointInstancer"},
-        {CURVES("uniform token wrap = \"periodic\"\n"), "FILE:2: periodic"},
-        {CURVES("float[] widths = [1, 2, 3]\n"), "FILE:7: widths: 3 numbers"},
-        {CURVES("texCoord2f[] primvars:st = [(1, 2)]\nint[] primvars:st:indices = [1]\n"),
-         "FILE:8: primvars:st:indices: 1: expected a whole number below 1"},
+         "1 object of curves left out (instances of a PointInstancer)"},
+        {CURVES("uniform token wrap = \"periodic\"\n"), "left out (closed curves)"},
         {CURVES("int[] curveVertexCounts = [3]\n"), "FILE:7: curveVertexCounts: 1 numbers"},
         {CURVES("int[] curveVertexCounts = [1]\n"), "FILE:6: points: 6 numbers"},
         {CURVES("int[] curveVertexCounts = [1.5]\n"), "FILE:7: curveVertexCounts"},
@@ -632,10 +624,89 @@ static void what_is_not_drawn_is_left_out_and_counted(void **state)
     Strands strands = read_text(text, strlen(text), &report, RESULT_OK, &error);
     assert_int_equal(strands.strand_count, 2);
     assert_string_equal(
-        report.note, "5 prims of curves are left out: they are inactive, invisible, abstract or of "
-                     "purpose guide or proxy; 1 prims of NURBS or Hermite curves are left out; 1 "
-                     "transforms without xformOpOrder have no effect");
+        report.note,
+        "1 transform without xformOpOrder has no effect; 3 objects of curves left out (inactive or "
+        "abstract); 2 objects of curves left out (hidden, or of purpose guide or proxy); 1 object "
+        "of curves left out (NURBS or Hermite curves, or of an unknown basis)");
+    assert_int_equal(report.contents.count, 8);
+    assert_int_equal(report.contents.left_out, 6);
     strands_destroy(&strands);
+}
+
+// What one bad part costs: how many strands are left, and what is said. With --strict it costs the
+// file, unless `says` is "".
+static void one_bad_part_does_not_cost_the_whole(void **state)
+{
+    (void)state;
+#define OTHER(text) "def BasisCurves \"other\"\n{\n" text "}\n"
+#define REST        "int[] curveVertexCounts = [2]\npoint3f[] points = [(0, 0, 0), (0, 1, 0)]\n"
+    static const struct {
+        const char *text, *says;
+        uint32_t strands;
+    } cases[] = {
+        {CURVES("uniform token[] xformOpOrder = [\"xformOp:scale\"]\n"),
+         "1 operation of xformOpOrder has no value", 1},
+        {CURVES("matrix4d xformOp:transform = None\n"
+                "uniform token[] xformOpOrder = [\"xformOp:transform\"]\n"),
+         "1 operation of xformOpOrder has no value", 1},
+        {CURVES("uniform token type = \"cubic\"\n"), "1 cubic curve of too few points", 1},
+        {CURVES("float[] widths = [1, 2, 3]\n"), "/x: widths: 3 numbers, which do not fit", 1},
+        {CURVES("texCoord2f[] primvars:st = [(1, 2)]\nint[] primvars:st:indices = [1]\n"),
+         "/x: primvars:st: 2 numbers, which do not fit", 1},
+        {CURVES("") OTHER("uniform token wrap = \"periodic\"\n" REST), "(closed curves)", 1},
+        {CURVES("") OTHER(REST "int[] curveVertexCounts = [3]\n"),
+         "(its arrays do not fit:12: curveVertexCounts: 1 numbers", 1},
+        {CURVES("") "def Material \"m\" (references = @a.usda@)\n{\n}\n", "1 reference", 1},
+        {CURVES("") "def Camera \"c\"\n{\nvariantSet \"v\" = { \"a\" { float f = 1 } }\n}\n",
+         "1 reference", 1},
+        {CURVES("int[] primvars:skel:jointIndices = [0]\n"), "a skeleton (UsdSkel) moves 1", 1},
+        {CURVES("int[] curveVertexCounts.timeSamples = { 1: [2], 2: [1, 1] }\n"),
+         "the numbers of points of 1 object change", 1},
+        {CURVES("/* a \" { */ asset a = @@@x@y@@@ // }\n"), "", 1},
+        {CURVES("uniform token visibility = \"invisible\"\n"), "", 1}, // all hair is hidden
+        {"#usda 1.0\ndef Xform \"a\"\n{\n" OTHER(
+             "uniform token type = \"linear\"\n" REST) "}\ndef Xform \"b\" (\ninstanceable = "
+                                                       "true\nreferences = </a>\n)\n{\n}\n",
+         "", 2},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        Error error = {""};
+        StrandsReport report;
+        StrandsReadOptions strict = {.strict = true};
+        Strands strands =
+            read_text(cases[i].text, strlen(cases[i].text), &report, RESULT_OK, &error);
+        assert_int_equal(strands.strand_count, cases[i].strands);
+        if (!strstr(report.note, cases[i].says)) fail_msg("%s: %s", cases[i].text, report.note);
+        strands_destroy(&strands);
+        Result result = reading_text(&strands, cases[i].text, &strict, NULL, &error);
+        if ((result == RESULT_OK) != !*cases[i].says) fail_msg("%s: %d", cases[i].text, result);
+        strands_destroy(&strands);
+    }
+}
+
+static void objects_are_groups_and_can_be_chosen(void **state)
+{
+    (void)state;
+    const char *text = METRIC OTHER("float[] primvars:Cd = [1, 1, 1]\n" REST) CURVES("");
+    StrandsReport report;
+    Strands strands;
+    StrandsReadOptions options = {.objects = "!oth*"};
+    assert_int_equal(reading_text(&strands, text, NULL, &report, NULL), RESULT_OK);
+    assert_int_equal(strands.strand_count, 2);
+    assert_true(strands.strand_group[0] == 0 && strands.strand_group[1] == 1);
+    assert_non_null(strstr(report.note, "not all objects have it: colours"));
+    assert_string_equal(report.contents.object[1].path, "/x");
+    strands_destroy(&strands);
+    assert_int_equal(reading_text(&strands, text, &options, &report, NULL), RESULT_OK);
+    assert_int_equal(strands.strand_count, 1);
+    assert_null(strands.strand_group);
+    strands_destroy(&strands);
+    options.objects = "/other,none";
+    assert_int_equal(reading_text(&strands, text, &options, &report, NULL), RESULT_OK);
+    assert_true(strands.color[0][0] == 1);
+    strands_destroy(&strands);
+    options.objects = "none";
+    assert_int_equal(reading_text(&strands, text, &options, &report, NULL), RESULT_BAD_INPUT);
 }
 
 static void every_truncation_and_damage_is_survived(void **state)
@@ -680,6 +751,8 @@ int main(void)
         TEST(materials_of_other_programs_are_read),
         TEST(long_strings_are_skipped_whole),
         TEST(what_would_give_other_hair_is_refused_with_its_line),
+        TEST(one_bad_part_does_not_cost_the_whole),
+        TEST(objects_are_groups_and_can_be_chosen),
         TEST(cubic_curves_become_points_on_them),
         TEST(attributes_of_cubic_curves_go_to_their_points),
         TEST(transforms_act_in_their_order),
