@@ -29,6 +29,7 @@ static Result read_fps(CacheStrands *strands, Error *error)
         return error_set(error, RESULT_FAILED, "%s: no memory for its scene",
                          strands->cache.file.path);
     strands->fps = json_number_value(json_object_get(scene, "fps"));
+    strands->number = (int)json_integer_value(json_object_get(scene, "frame_number"));
     json_decref(scene);
     return strands->fps > 0 ? RESULT_OK : refuse_cache(strands, "its scene has no fps", error);
 }
@@ -192,7 +193,7 @@ static bool frame_is_there(const ConvertInput *input, int frame)
 static int find_last(const ConvertInput *input)
 {
     int last = input->first;
-    if (input->cached) return (int)input->cache.cache.frame_count - 1;
+    if (input->cached) return input->cache.number + (int)input->cache.cache.frame_count - 1;
     if (input->framed) return input->frames.first + (int)input->frames.count - 1;
     while (frame_is_there(input, last)) ++last;
     return last - 1;
@@ -241,14 +242,15 @@ static Result choose_frames(ConvertInput *input, Error *error)
     }
     double own = input->cached ? input->cache.fps : input->frames.fps;
     if (input->fps <= 0) input->fps = own > 0 ? own : USUAL_FPS;
-    if (input->framed && input->first == 0) input->first = input->frames.first;
+    int own_first = input->framed ? input->frames.first : input->cached ? input->cache.number : 0;
+    if (input->first == 0) input->first = own_first;
     if (input->last < 0) input->last = find_last(input);
     if (whole) TRY(check_whole(input, error));
     if (input->framed) return check_framed(input, error);
-    if (input->last >= input->first)
-        return input->cached ? cache_file_check(&input->cache.cache, input->last, error)
-                             : RESULT_OK;
-    if (input->cached) return cache_file_check(&input->cache.cache, input->first, error);
+    int last = input->last >= input->first ? input->last : input->first;
+    if (input->cached)
+        return cache_file_check(&input->cache.cache, last - input->cache.number, error);
+    if (input->last >= input->first) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: no file for frame %d", input->paths[0],
                      input->first);
 }
@@ -373,7 +375,8 @@ static Result read_files(ConvertInput *input, Strands *strands, Error *error)
 Result convert_input_read(ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     *strands = (Strands){0};
-    if (input->cached) return read_cache(&input->cache, frame, strands, error);
+    if (input->cached)
+        return read_cache(&input->cache, frame - input->cache.number, strands, error);
     if (input->numbered) return read_numbered(input, frame, strands, error);
     if (input->framed) return read_framed(input, frame, strands, error);
     return read_files(input, strands, error);

@@ -21,6 +21,7 @@ typedef struct CacheStrands {
     uint32_t *section; // [strand_count]: the section of each strand
     uint32_t section_count;
     double fps;            // frames per second
+    int number;            // of the first frame
     float (*positions)[3]; // of a frame, in the cache's order
 } CacheStrands;
 

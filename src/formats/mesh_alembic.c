@@ -4,6 +4,7 @@
 // become triangle fans. Alembic lists corners clockwise; meshes here are counter-clockwise.
 #include "formats/alembic.h"
 #include "formats/foreign.h"
+#include "formats/format.h"
 #include "formats/mesh_sequence.h"
 
 #include <stdlib.h>
@@ -63,6 +64,14 @@ static void open_mesh(AbcMeshes *all, int object, MeshSamples *samples)
     }
 }
 
+static bool is_wanted(const OgawaObject *object, const MeshSamples *samples)
+{
+    const FormatWishes wishes = {.objects = samples->objects};
+    return (begins_with(object->schema, "AbcGeom_PolyMesh") ||
+            begins_with(object->schema, "AbcGeom_SubD")) &&
+           format_wants_object(&wishes, object->path);
+}
+
 static void open_all(AbcMeshes *all, MeshSamples *samples)
 {
     Ogawa *file = &all->alembic.file;
@@ -71,15 +80,12 @@ static void open_all(AbcMeshes *all, MeshSamples *samples)
     for (int i = 0; i < file->count && reader_ok(file->reader); ++i) {
         const char *schema = file->object[i].schema;
         curves += begins_with(schema, "AbcGeom_Curve");
-        bool is_mesh =
-            begins_with(schema, "AbcGeom_PolyMesh") || begins_with(schema, "AbcGeom_SubD");
+        bool is_mesh = is_wanted(&file->object[i], samples);
         hidden += is_mesh && all->alembic.hidden[i];
         shown += is_mesh && !all->alembic.hidden[i];
     }
     for (int i = 0; i < file->count && reader_ok(file->reader); ++i) {
-        const char *schema = file->object[i].schema;
-        bool is_mesh =
-            begins_with(schema, "AbcGeom_PolyMesh") || begins_with(schema, "AbcGeom_SubD");
+        bool is_mesh = is_wanted(&file->object[i], samples);
         if (is_mesh && (shown == 0 || !all->alembic.hidden[i])) open_mesh(all, i, samples);
     }
     if (shown == 0 && hidden)

@@ -256,7 +256,7 @@ static Result read_file(MeshSequence *sequence, Mesh *mesh, const Mesh *rest, co
     Bytes bytes = {0};
     TRY(bytes_read_file(&bytes, path, error));
     const MeshSequenceFormat *format = find_format(path, &bytes);
-    MeshSamples samples = {.up_z = -1};
+    MeshSamples samples = {.up_z = -1, .objects = options->objects};
     Result result = RESULT_OK;
     if (format) {
         Reader reader =

@@ -22,6 +22,8 @@ typedef struct MeshSequenceOptions {
     double unit, otherwise_unit; // metres per unit; 0: as the file says, otherwise the second value
     int up_z, otherwise_up_z;    // 1: z is up, 0: y; -1: as the file says, otherwise the second
                                  // value
+    const char *objects;         // which objects of a USD or Alembic file; NULL or "": all
+                                 // (format_wants_object)
     const char *rest;            // OBJ file of the rest pose; "" if none
     double rate, otherwise_rate; // samples per second; 0: as the file says, otherwise the second
                                  // value
@@ -35,9 +37,10 @@ typedef struct MeshSamples {
     float (*position)[3];    // [count * vertex_count]
     uint32_t (*triangle)[3]; // [triangle_count], below vertex_count; NULL if the file has no faces
     uint64_t triangle_count;
-    double rate, unit; // 0 if the file does not say
-    double first;      // number of the first sample, in frames of this rate
-    int up_z;          // -1 if the file does not say
+    double rate, unit;   // 0 if the file does not say
+    double first;        // number of the first sample, in frames of this rate
+    int up_z;            // -1 if the file does not say
+    const char *objects; // the caller's, as in MeshSequenceOptions
     char note[MESH_NOTE_SIZE];
 } MeshSamples;
 

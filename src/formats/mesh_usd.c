@@ -2,6 +2,7 @@
 // Animated meshes in `.usda` files: joins all visible Mesh prims with the transforms above them
 // into one mesh. Polygons become triangle fans.
 #include "formats/foreign.h"
+#include "formats/format.h"
 #include "formats/mesh_sequence.h"
 #include "formats/usd_stage.h"
 
@@ -16,6 +17,7 @@ typedef struct UsdMesh {
     int prim;
     UsdSamples points, counts, corners;
     bool left_handed; // corners are listed clockwise
+    bool unwanted;    // the caller's choice leaves it out
     bool copy;        // of another one, which owns the samples
     uint64_t first;   // first vertex in the joined mesh
 } UsdMesh;
@@ -23,7 +25,8 @@ typedef struct UsdMesh {
 typedef struct UsdMeshes {
     Reader *reader;
     UsdStage stage;
-    UsdMesh *mesh;                          // [count] only meshes with points
+    UsdMesh *mesh; // [count] only meshes with points
+    FormatWishes wishes;
     uint32_t count, kept, left_out, curves; // the first `kept` meshes are read
 } UsdMeshes;
 
@@ -94,7 +97,10 @@ static void add_mesh(UsdMeshes *all, UsdMesh *mesh)
 
 static void end_mesh(void *to, void *object)
 {
-    add_mesh(to, object);
+    UsdMeshes *all = to;
+    UsdMesh *mesh = object;
+    mesh->unwanted = !format_wants_object(&all->wishes, all->stage.path);
+    add_mesh(all, mesh);
     destroy_mesh(object);
     free(object);
 }
@@ -104,7 +110,6 @@ static void repeat_mesh(void *to, int of, int prim, const char *path)
 {
     UsdMeshes *all = to;
     int from = -1;
-    (void)path;
     if (!reader_work(all->reader, all->count, 3)) return;
     for (uint32_t i = 0; i < all->count; ++i) {
         if (all->mesh[i].prim == prim) return;
@@ -114,6 +119,7 @@ static void repeat_mesh(void *to, int of, int prim, const char *path)
     UsdMesh copy = all->mesh[from];
     copy.prim = prim;
     copy.copy = true;
+    copy.unwanted = !format_wants_object(&all->wishes, path);
     add_mesh(all, &copy);
 }
 
@@ -126,7 +132,7 @@ static void choose_meshes(UsdMeshes *all, MeshSamples *samples)
     const UsdStage *stage = &all->stage;
     uint32_t shown = 0, hidden = 0, kept = 0, scattered = 0;
     for (uint32_t i = 0; i < all->count; ++i) {
-        bool lacks = usd_stage_lacks(stage, all->mesh[i].prim);
+        bool lacks = usd_stage_lacks(stage, all->mesh[i].prim) || all->mesh[i].unwanted;
         bool hides = usd_stage_hides(stage, all->mesh[i].prim);
         shown += !lacks && !hides;
         hidden += !lacks && hides;
@@ -135,7 +141,7 @@ static void choose_meshes(UsdMeshes *all, MeshSamples *samples)
         UsdMesh *mesh = &all->mesh[i], other = *mesh;
         bool in_instancer = usd_stage_instances(stage, mesh->prim);
         scattered += in_instancer;
-        if (usd_stage_lacks(stage, mesh->prim) || in_instancer ||
+        if (usd_stage_lacks(stage, mesh->prim) || mesh->unwanted || in_instancer ||
             (shown && usd_stage_hides(stage, mesh->prim)))
             continue;
         if (usd_stage_skins(stage, mesh->prim) && !mesh->points.timed)
@@ -290,7 +296,7 @@ static void make_samples(UsdMeshes *all, MeshSamples *samples)
 
 static void read(MeshSamples *samples, Reader *reader)
 {
-    UsdMeshes all = {.reader = reader};
+    UsdMeshes all = {.reader = reader, .wishes.objects = samples->objects};
     usd_stage_read(&all.stage, reader, &MESHES, &all);
     if (reader_ok(reader)) choose_meshes(&all, samples);
     if (reader_ok(reader) && all.kept == 0)

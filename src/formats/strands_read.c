@@ -309,7 +309,11 @@ static Result read_bytes(Strands *strands, StrandsFrames *frames, const char *na
         source.strands = (Strands){0};
     }
     if (result == RESULT_OK && frames && source.frames) {
-        *frames = (StrandsFrames){source.samples, source.frames, source.fps, source.first_frame};
+        *frames = (StrandsFrames){.count = source.samples,
+                                  .vertices = strands->vertex_count,
+                                  .position = source.frames,
+                                  .fps = source.fps,
+                                  .first = source.first_frame};
         source.frames = NULL;
         report->all_samples = true;
     }
@@ -348,6 +352,7 @@ Result strands_read(Strands *strands, const char *path, const StrandsReadOptions
 void strands_frames_destroy(StrandsFrames *frames)
 {
     free(frames->position);
+    free(frames->first_vertex);
     *frames = (StrandsFrames){0};
 }
 

@@ -20,10 +20,12 @@ typedef struct StrandsReadOptions {
 
 // All frames of an animated file. A zeroed struct is empty.
 typedef struct StrandsFrames {
-    uint32_t count;       // 0 if the file is not animated
-    float (*position)[3]; // [count * vertex_count] metres, y up
-    double fps;           // 0 if the file does not say
-    int first;            // number of the first frame
+    uint32_t count;         // 0 if the file is not animated
+    uint32_t vertices;      // of a frame
+    float (*position)[3];   // [count * vertices] metres, y up
+    uint32_t *first_vertex; // [strand_count + 1] of each strand; NULL: those of the strands
+    double fps;             // 0 if the file does not say
+    int first;              // number of the first frame
 } StrandsFrames;
 
 // Reads `path` and mends it: metres, y up, and at least one strand. Every strand has 2 ..

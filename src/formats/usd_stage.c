@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "formats/usd_stage.h"
+#include "base/rate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -431,7 +432,7 @@ static void read_layer_value(UsdStage *stage, const char *name)
                    : strcmp(name, "framesPerSecond") == 0  ? &stage->frames_per_second
                                                            : NULL;
     if (rate) {
-        *rate = (double)usd_text_read_float(reader);
+        *rate = rate_snap(usd_text_read_double(reader));
     } else if (strcmp(name, "metersPerUnit") == 0) {
         stage->unit = usd_text_read_float(reader);
     } else if (strcmp(name, "kilogramsPerUnit") == 0) {

@@ -168,7 +168,7 @@ float usd_text_read_float(Reader *reader)
     return (float)read_number(reader, true);
 }
 
-static double read_double(Reader *reader)
+double usd_text_read_double(Reader *reader)
 {
     return read_number(reader, false);
 }
@@ -237,7 +237,7 @@ void usd_text_read_numbers(Reader *reader, double *numbers, int most)
             --depth;
         } else if (c != ',' || depth == 0) {
             if (count == most) reader_fail(reader, "more than %d numbers", most);
-            if (reader_ok(reader)) numbers[count++] = read_double(reader);
+            if (reader_ok(reader)) numbers[count++] = usd_text_read_double(reader);
             continue;
         }
         usd_text_step(reader);

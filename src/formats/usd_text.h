@@ -36,8 +36,9 @@ void usd_text_read_string(Reader *reader, char text[USD_WORD_SIZE]);
 // Skips any value: brackets with their content, a string, a path, an asset, a word.
 void usd_text_skip_value(Reader *reader);
 
-// A number; infinite if it is beyond float32.
+// A number; infinite if it is beyond float32, or float64.
 float usd_text_read_float(Reader *reader);
+double usd_text_read_double(Reader *reader);
 
 // All numbers between brackets, regardless of nested brackets. The caller frees `value`.
 typedef struct UsdValues {

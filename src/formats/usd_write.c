@@ -49,8 +49,9 @@ static void put_layer(FILE *stream, const CurvesOptions *options)
     if (options->animated) {
         fprintf(stream, "\n    startTimeCode = %d\n    endTimeCode = %d", options->first,
                 options->last);
-        decimal_put(stream, "\n    timeCodesPerSecond = ", (float)options->fps);
-        decimal_put(stream, "\n    framesPerSecond = ", (float)options->fps);
+        char rate[40];
+        decimal_format_double(options->fps, rate, sizeof rate);
+        fprintf(stream, "\n    timeCodesPerSecond = %s\n    framesPerSecond = %s", rate, rate);
     }
     fprintf(stream, "\n    upAxis = \"%c\"\n)\n\n", options->up_z ? 'Z' : 'Y');
 }

@@ -36,7 +36,7 @@ char *cache_scene_maker(const Bytes *text)
 
 // Parameters in the groups below that do not change the motion of guides.
 static const char *const HARMLESS[] = {"frames",    "followers",      "follow", "follower_radius",
-                                       "sdf_cache", "tip_separation", "clump"};
+                                       "sdf_cache", "tip_separation", "clump",  "frame_number"};
 
 // Keys that are not parameters and only concern drawing.
 static const char *const DRAWN[] = {"camera", "lights", "file"};

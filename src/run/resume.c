@@ -185,6 +185,7 @@ Result resume_find(FramesDone *done, const RunParams *run, int last, const Finge
     Search search = {.run = run, .fingerprint = fingerprint, .done = done};
     *done = (FramesDone){0};
     Result result = parse_targets(&search.images, &search.hair, run, error);
+    search.images.offset = search.hair.offset = run->frame_number.value;
     bool whole = is_whole(&search.images) || is_whole(&search.hair);
     if (result == RESULT_OK && search.images.kind == TARGET_FRAMES &&
         search.images.format == TARGET_PFM)

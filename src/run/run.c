@@ -302,7 +302,7 @@ static void report_filled(const Run *run)
 // vertices 256 MB. Caches and exports still need them.
 static void release_strands(Run *run)
 {
-    if (run->exports || *run->scene.run.cache) return;
+    if (run->exports || *run->scene.run.cache) return; // frames that are played are kept apart
     for (uint32_t i = 0; i < run->assets.section_count; ++i)
         strands_destroy(&run->assets.strands[i]);
 }
@@ -334,11 +334,13 @@ static Result prepare(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
+    run->scene.plays = true;
     activity_start(stderr, params->quiet);
     TRY(run_check(&run->scene, error));
     TRY(check_cache(params, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
                     error));
+    TRY(run_check(&run->scene, error)); // its frames are known now
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
                     error));
     // After a guessed scalp has added its colliders.

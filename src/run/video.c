@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/video.h"
+#include "base/rate.h"
 
 #include "base/outfile.h"
 
@@ -145,7 +146,9 @@ static bool make_command(Command *command, const Format *format, const VideoOpti
 {
     *command = (Command){0};
     snprintf(command->size, sizeof command->size, "%dx%d", options->width, options->height);
-    snprintf(command->rate, sizeof command->rate, "%.9g", options->fps);
+    long frames, seconds;
+    rate_fraction(rate_snap(options->fps), &frames, &seconds);
+    snprintf(command->rate, sizeof command->rate, "%ld/%ld", frames, seconds);
     write_filter(command, format, options);
     // Because the protocol is named, no character of the file's name has a meaning to ffmpeg. The
     // folder is given by the descriptor that ffmpeg inherits, so the file lands there even if the

@@ -23,6 +23,7 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
         .seed = scene->run.seed,
         .points_per_strand = section->params.points_per_strand,
         .array = section->params.array,
+        .objects = section->params.object,
     };
 }
 
@@ -84,25 +85,125 @@ static void take_fibre(Section *section, const Strands *strands, FILE *messages)
                 (double)params->hair_density, (double)params->hair_radius);
 }
 
-static Result pick_group(Strands *strands, const Section *section, Error *error)
+// Removes all other groups; the frames keep all their vertices.
+static Result pick_group(Strands *strands, StrandsFrames *frames, const Section *section,
+                         Error *error)
 {
-    Result result = strands_pick_group(strands, (double)section->params.group.value, error);
+    double group = (double)section->params.group.value;
+    uint32_t kept = 0;
+    for (uint32_t s = 0; frames->count && s < strands->strand_count; ++s)
+        if ((strands->strand_group ? (double)strands->strand_group[s] : 0) == group)
+            frames->first_vertex[kept++] = strands->first[s];
+    Result result = strands_pick_group(strands, group, error);
     if (result == RESULT_OK) return result;
     return error_prefix(error, result, "%s: --group: ", section->file);
 }
 
-static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,
-                           bool verbose, Error *error)
+// --- Animated hair.
+
+static bool has_default(const Section *section, const char *name)
+{
+    return section->origin[params_find(name) - PARAM_TABLE] == ORIGIN_DEFAULT;
+}
+
+// Whether the section's file is played if it is animated.
+static bool may_play(const Scene *scene, const Section *section)
+{
+    return scene->plays && !*scene->run.from_cache && section->params.hair_frame.automatic &&
+           (has_default(section, "algo") || strcmp(section->params.algo, "none") == 0);
+}
+
+// The rest pose is that of --hair-frame.
+static Result take_frame(Strands *strands, const StrandsFrames *frames, const Section *section,
+                         Error *error)
+{
+    const AutoInt *wanted = &section->params.hair_frame;
+    int place = wanted->value - frames->first, count = (int)frames->count;
+    if (wanted->automatic) return RESULT_OK;
+    if (count == 0)
+        return error_set(error, RESULT_USAGE,
+                         "%s: --hair-frame has no effect: the file has one frame", section->file);
+    if (place < 0 || place >= count)
+        return error_set(error, RESULT_USAGE, "%s: --hair-frame %d: the file has frames %d to %d",
+                         section->file, wanted->value, frames->first, frames->first + count - 1);
+    memcpy(strands->position, frames->position + (size_t)place * strands->vertex_count,
+           strands->vertex_count * sizeof *strands->position);
+    return RESULT_OK;
+}
+
+// Makes a section play its file's frames.
+static Result play(Assets *assets, Scene *scene, uint32_t i, FILE *messages, Error *error)
+{
+    Section *section = &scene->sections[i];
+    StrandsFrames *frames = &assets->frames[i];
+    const Strands *strands = &assets->strands[i];
+    char *none = strdup("none");
+    frames->first_vertex = malloc(((size_t)strands->strand_count + 1) * sizeof(uint32_t));
+    if (!frames->first_vertex || !none) {
+        free(none);
+        return error_set(error, RESULT_FAILED, "no memory for %s", section->file);
+    }
+    memcpy(frames->first_vertex, strands->first,
+           ((size_t)strands->strand_count + 1) * sizeof(uint32_t));
+    free(section->params.algo);
+    section->params.algo = none;
+    if (!(frames->fps > 0)) frames->fps = scene->run.fps;
+    section->frames = frames;
+    if (messages)
+        fprintf(
+            messages,
+            "%s: %u frames from %d on, %.6g a second, are played; --algo NAME simulates instead\n",
+            quote(section->file).text, frames->count, frames->first, frames->fps);
+    return RESULT_OK;
+}
+
+// The run's frames and rate are those of the longest animation that is played.
+static void take_length(const Assets *assets, Scene *scene)
+{
+    RunParams *run = &scene->run;
+    const StrandsFrames *longest = NULL;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const StrandsFrames *frames = scene->sections[i].frames;
+        if (frames && (!longest || frames->count > longest->count)) longest = frames;
+    }
+    if (!longest) return;
+    (void)assets;
+    if (scene_has_default(scene, "fps") && longest->fps >= 0.001 && longest->fps <= 10000)
+        run->fps = longest->fps;
+    double frames = (longest->count - 1) * run->fps / (longest->fps * (double)run->speed);
+    if (scene_has_default(scene, "frames") && run->speed > 0 && frames < 1e7)
+        run->frames = (int)(frames + 1e-6) + 1;
+}
+
+// The number of the first frame: that of the hair that is played, otherwise of the mesh.
+static Result number_frames(Assets *assets, Scene *scene, Error *error)
+{
+    RunParams *run = &scene->run;
+    for (uint32_t i = scene->section_count; i-- > 0;)
+        if (scene->sections[i].frames) assets->first_number = scene->sections[i].frames->first;
+    if (!scene->plays) return RESULT_OK;
+    if (run->frame_number.automatic)
+        run->frame_number = (AutoInt){.value = assets->first_number > 0 ? assets->first_number : 0};
+    return scene_number_frames(scene, error);
+}
+
+static Result load_section(Assets *assets, Scene *scene, uint32_t i, FILE *messages, bool verbose,
+                           Error *error)
 {
     const Section *section = &scene->sections[i];
     const StrandsReadOptions options = read_options(scene, section);
     if (section->given) return take_given(assets, i, section->given, error);
     activity_set("reading hair");
-    Result result =
-        strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
+    bool plays = may_play(scene, section), all = plays || !section->params.hair_frame.automatic;
+    StrandsFrames *frames = &assets->frames[i];
+    Result result = strands_read_frames(&assets->strands[i], all ? frames : NULL, section->file,
+                                        &options, &assets->reports[i], error);
     activity_set(NULL);
+    THEN(result, take_frame(&assets->strands[i], frames, section, error));
+    if (!plays || frames->count < 2) strands_frames_destroy(frames);
+    if (result == RESULT_OK && frames->count) result = play(assets, scene, i, messages, error);
     if (result == RESULT_OK && !section->params.group.automatic)
-        result = pick_group(&assets->strands[i], section, error);
+        result = pick_group(&assets->strands[i], frames, section, error);
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
     warn_ignored(&assets->strands[i], section->file, messages);
@@ -162,6 +263,9 @@ static Result load_sequence(const BodyLoad *load, const MeshSequenceOptions *opt
     Result result =
         mesh_sequence_read(&sequence, load->mesh, &rest, load->body->params.mesh, options, error);
     bool deforms = sequence.times.count > 1 || rest.vertex_count > 0;
+    if (result == RESULT_OK && sequence.times.count > 1 && load->assets->first_number == 0 &&
+        sequence.first > 0 && sequence.first < 1e8)
+        load->assets->first_number = (int)(sequence.first + 0.5);
     if (result == RESULT_OK && load->messages && *sequence.note)
         fprintf(load->messages, "%s: %s\n", quote(load->body->params.mesh).text, sequence.note);
     if (result == RESULT_OK && deforms) result = bind_hair(load, &sequence, &rest, error);
@@ -217,6 +321,7 @@ static Result load_body(const BodyLoad *load, Error *error)
         .up_z = params->mesh_up == UP_AUTO ? -1 : params->mesh_up == UP_Z,
         .otherwise_up_z = first && first->up_z,
         .rest = params->mesh_rest,
+        .objects = params->mesh_object,
         .rate = params->mesh_fps.automatic ? 0 : (double)params->mesh_fps.value,
         .otherwise_rate = (double)load->run->fps,
         .start = (double)params->mesh_start,
@@ -235,14 +340,17 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
     *assets = (Assets){.section_count = scene->section_count, .body_count = scene->body_count};
     assets->strands = calloc((size_t)scene->section_count + 1, sizeof *assets->strands);
     assets->reports = calloc((size_t)scene->section_count + 1, sizeof *assets->reports);
+    assets->frames = calloc((size_t)scene->section_count + 1, sizeof *assets->frames);
     assets->meshes = calloc((size_t)scene->body_count + 1, sizeof *assets->meshes);
     assets->bodies = calloc((size_t)scene->body_count + 1, sizeof *assets->bodies);
-    if (!assets->strands || !assets->reports || !assets->meshes || !assets->bodies)
+    if (!assets->strands || !assets->reports || !assets->frames || !assets->meshes ||
+        !assets->bodies)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         TRY(load_section(assets, scene, i, messages, verbose, error));
         take_fibre(&scene->sections[i], &assets->strands[i], messages);
     }
+    take_length(assets, scene);
     for (uint32_t b = 0; b < scene->body_count; ++b) {
         const BodyLoad load = {.assets = assets,
                                .run = &scene->run,
@@ -258,6 +366,7 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
                                    (double)assets->reports[scene->bodies[b].first].unit_used,
                                    messages, error));
     }
+    TRY(number_frames(assets, scene, error));
     if (*scene->run.environment)
         TRY(environment_read(&assets->environment, scene->run.environment,
                              scene->run.environment_background, error));
@@ -268,12 +377,15 @@ void assets_destroy(Assets *assets)
 {
     for (uint32_t i = 0; assets->strands && i < assets->section_count; ++i)
         strands_destroy(&assets->strands[i]);
+    for (uint32_t i = 0; assets->frames && i < assets->section_count; ++i)
+        strands_frames_destroy(&assets->frames[i]);
     for (uint32_t b = 0; assets->meshes && b < assets->body_count; ++b)
         mesh_destroy(&assets->meshes[b]);
     for (uint32_t b = 0; assets->bodies && b < assets->body_count; ++b)
         body_destroy(&assets->bodies[b]);
     free(assets->strands);
     free(assets->reports);
+    free(assets->frames);
     free(assets->meshes);
     free(assets->bodies);
     environment_destroy(&assets->environment);

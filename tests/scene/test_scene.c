@@ -384,7 +384,7 @@ static const struct {
     {"{" HAIR ", \"drag\": [[0.5, 1], [0.25, 3]]}", "drag: got '1@0.5:3@0.25'"},
     {"{" HAIR ", \"tip-ratio\": 1}", "unknown key 'tip-ratio': did you mean 'tip_ratio'?"},
     {"{" HAIR ", \"line\\nend\": 1}", "unknown key 'line\\nend'"},
-    {"{" HAIR ", \"fps\": \"30\"}", "fps: got \"30\", expected a number from 1 to 10000"},
+    {"{" HAIR ", \"fps\": \"3/0\"}", "fps: got '3/0', expected a number from 0.001 to 10000"},
     {"{" HAIR ", \"fps\": null}", "fps: got null"},
     {"{" HAIR ", \"fps\": true}", "fps: got true"},
     {"{" HAIR ", \"fps\": 0}", "(nearest: 1)"},
