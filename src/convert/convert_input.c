@@ -408,8 +408,8 @@ void convert_input_print(const ConvertInput *input, FILE *stream)
 
 static json_t *defects_to_json(const StrandsReport *report, const char *path)
 {
-    static const char *const names[DEFECT_KINDS] = {"not_finite", "too_short",  "coincident",
-                                                    "attribute",  "over_limit", "unread"};
+    static const char *const names[DEFECT_KINDS] = {
+        "not_finite", "too_short", "coincident", "attribute", "over_limit", "padding", "unread"};
     json_t *list = json_array();
     for (int kind = 0; kind < DEFECT_KINDS; ++kind) {
         const Defect *defect = &report->defects[kind];

@@ -8,6 +8,7 @@
     "bake it: blender -b --python scripts/blender_hair.py -- export FILE --mesh x.npz --frames "   \
     "scene (installed: /usr/share/tractrix/blender_hair.py)"
 #define NO_STRANDS "it keeps no strands: export Alembic, USD or Wavefront lines"
+#define LIGHTS     "--environment takes it as light"
 #define UNPACK     "unpack it"
 #define ALEMBIC    "export Alembic there"
 
@@ -32,7 +33,20 @@ static const ForeignFile FILES[] = {
     {"; FBX", "FBX", NO_STRANDS, MESH},
     {"glTF", "GLB", NO_STRANDS, MESH},
     {"\x7fNSJ", "a Houdini file (.bgeo)", "export .usda there", "export .usda there"},
+    {"# vtk", "a VTK file", "write its lines as PLY or Wavefront lines", "save it as PLY"},
+    {"#sdf ", "a file of Pixar's scene description before USD", "expected USD", "expected USD"},
+    {"#!", "a script", "expected hair", "expected .obj or .ply"},
+    {"%PDF", "a PDF file", "expected hair", "expected .obj or .ply"},
+    {"solid ", "STL, a mesh", FOREIGN_WANTS_HAIR, "convert it to .obj or .ply"},
+    {"OFF\n", "OFF, a mesh", FOREIGN_WANTS_HAIR, "convert it to .obj or .ply"},
+    {"#?RADIANCE", "a Radiance image (.hdr)", LIGHTS, LIGHTS},
+    {"#?RGBE", "a Radiance image (.hdr)", LIGHTS, LIGHTS},
+    {"v/1\x01", "an EXR image", LIGHTS, LIGHTS},
     {"\x89PNG", "a PNG image", "expected hair", "expected .obj or .ply"},
+    {"\xff\xd8\xff", "a JPEG image", "expected hair", "expected .obj or .ply"},
+    {"GIF8", "a GIF image", "expected hair", "expected .obj or .ply"},
+    {"8BPS", "a Photoshop image", "expected hair", "expected .obj or .ply"},
+    {"RIFF", "a WebP image, a sound or a video (RIFF)", "expected hair", "expected .obj or .ply"},
 };
 
 const ForeignFile *foreign_find(const void *data, size_t size)

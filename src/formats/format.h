@@ -95,6 +95,8 @@ typedef struct FormatSource {
     float (*frames)[3];     // [samples * vertex_count] if wishes.all_frames; otherwise NULL
     double fps;             // samples per second; 0 if the file does not say
     int first_frame;        // number of the first sample
+    bool pads;              // strands lie in an array of equal sizes: what is not finite behind the
+                            // last finite vertex is no part of a strand
     bool roots_only;        // strands of one vertex are intended: roots without hair
                             // (USC-HairSalon)
     double thickness_unit;  // metres, of vertex thickness; 0: that of the positions

@@ -67,6 +67,7 @@ static Result make_source(FormatSource *source, Reader *reader, const NpyArray *
     }
     free(source->strands.position);
     source->strands.position = positions;
+    source->pads = !sizes;
     if (!sizes) cloud_set_strands(source, layout.size);
     for (uint32_t s = 0; sizes && s < layout.strands; s++)
         source->strands.first[s + 1] = source->strands.first[s] + sizes[s];

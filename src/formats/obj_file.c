@@ -17,6 +17,7 @@ typedef struct Obj {
     float (*position)[3];                     // [vertices]
     uint32_t *line;                           // [vertices] line in the file
     uint64_t vertices, lines, corners, faces; // in the file
+    bool pairs;                               // each `l` has two corners
     uint32_t read;                            // vertices read so far
     uint32_t strands, used;                   // so far; `used` counts corners
     int64_t last;                             // vertex where the last `l` ended; -1 if none
@@ -31,9 +32,11 @@ static void count_statements(Obj *obj)
         obj->vertices += statement == OBJ_VERTEX;
         obj->lines += statement == OBJ_LINE;
         obj->faces += statement == OBJ_FACE;
+        uint64_t before = obj->corners;
         while (statement == OBJ_LINE && obj_goes_on(&counter) &&
                reader_read_word(&counter, word, sizeof word))
             obj->corners++;
+        if (statement == OBJ_LINE && obj->corners != before + 2) obj->pairs = false;
         reader_skip_line(&counter);
     }
 }
@@ -87,8 +90,102 @@ static void read_line(Obj *obj)
         reader_fail(obj->reader, "a line of %u vertices: expected at least 2", corners);
 }
 
+// --- Edges. If each `l` names two vertices, they are edges, in any order and direction, if no
+// vertex has more than two. Each chain is a strand; the end with the lower number is its root.
+
+typedef struct Edges {
+    uint32_t (*end)[2]; // [count] of each `l`
+    int64_t (*next)[2]; // [vertices] neighbours; -1: none
+    uint8_t *seen;      // [vertices]
+    uint32_t count;
+} Edges;
+
+static void read_edges(Obj *obj, Edges *edges)
+{
+    Reader *reader = obj->reader;
+    ObjStatement statement;
+    while (obj_next_statement(reader, &statement)) {
+        if (statement == OBJ_VERTEX) read_vertex(obj);
+        if (statement == OBJ_LINE) {
+            edges->end[edges->count][0] = read_corner(obj);
+            edges->end[edges->count][1] = read_corner(obj);
+            edges->count++;
+        }
+        reader_skip_line(reader);
+    }
+}
+
+// Whether no vertex has more than two edges, and none leads back to its own vertex.
+static bool link_edges(const Obj *obj, const Edges *edges)
+{
+    for (uint64_t v = 0; v < obj->vertices; ++v) edges->next[v][0] = edges->next[v][1] = -1;
+    for (uint32_t i = 0; i < edges->count; ++i)
+        for (int k = 0; k < 2; ++k) {
+            int64_t *next = edges->next[edges->end[i][k]];
+            uint32_t other = edges->end[i][!k];
+            if (next[1] >= 0 || next[0] == other || other == edges->end[i][k]) return false;
+            next[next[0] >= 0] = other;
+        }
+    return true;
+}
+
+// Whether the edges make chains with ends only: a chain has one vertex more than edges.
+static bool are_chains(const Obj *obj, const Edges *edges)
+{
+    uint64_t ends = 0, used = 0;
+    for (uint64_t v = 0; v < obj->vertices; ++v) {
+        ends += edges->next[v][0] >= 0 && edges->next[v][1] < 0;
+        used += edges->next[v][0] >= 0;
+    }
+    return used == edges->count + ends / 2;
+}
+
+static void add_chain(Obj *obj, const Edges *edges, uint32_t root)
+{
+    Strands *strands = &obj->source->strands;
+    int64_t before = -1, at = root;
+    obj->source->place[obj->strands++] = obj->line[root];
+    while (at >= 0) {
+        const int64_t *next = edges->next[at];
+        int64_t after = before >= 0 && next[0] == before ? next[1] : next[0];
+        if (before >= 0 && next[1] == before) after = next[0];
+        if (before >= 0 && next[1] < 0) after = -1; // the tip
+        edges->seen[at] = 1;
+        add_corner(obj, (uint32_t)at);
+        before = at;
+        at = after;
+    }
+    strands->first[obj->strands] = obj->used;
+}
+
+// Reads a file of edges as chains. False if it is none: then nothing is read.
+static bool read_chains(Obj *obj)
+{
+    Reader *reader = obj->reader, before = *reader;
+    Edges edges = {.end = reader_malloc(reader, obj->lines, sizeof *edges.end),
+                   .next = reader_malloc(reader, obj->vertices, sizeof *edges.next),
+                   .seen = reader_calloc(reader, obj->vertices, 1)};
+    bool good = edges.end && edges.next && edges.seen;
+    if (good) read_edges(obj, &edges);
+    good = good && reader_ok(reader) && link_edges(obj, &edges) && are_chains(obj, &edges);
+    for (uint32_t v = 0; v < obj->vertices && good; ++v)
+        if (!edges.seen[v] && edges.next[v][0] >= 0 && edges.next[v][1] < 0)
+            add_chain(obj, &edges, v);
+    if (!good && reader_ok(reader)) {
+        before.memory = reader->memory;
+        before.work = reader->work;
+        *reader = before;
+        obj->read = 0;
+    }
+    free(edges.end);
+    free(edges.next);
+    free(edges.seen);
+    return good || !reader_ok(reader);
+}
+
 static void read_statements(Obj *obj)
 {
+    if (obj->pairs && read_chains(obj)) return;
     ObjStatement statement;
     while (obj_next_statement(obj->reader, &statement)) {
         if (statement == OBJ_VERTEX) read_vertex(obj);
@@ -124,11 +221,12 @@ static Result make_room(Obj *obj)
 
 // Reads `v` and `l` statements and ignores all others. Indices count from 1, or from the last
 // vertex if negative; corners are v or v/t. Some programs write each edge as an `l` statement of
-// its own, so an `l` that begins at the vertex where the previous one ended continues its strand.
+// its own: see above. Otherwise an `l` that begins at the vertex where the previous one ended
+// continues its strand.
 // Vertices that no `l` uses are ignored.
 static Result read(FormatSource *source, Reader *reader)
 {
-    Obj obj = {.reader = reader, .source = source, .last = -1};
+    Obj obj = {.reader = reader, .source = source, .last = -1, .pairs = true};
     reader->continuation = true;
     count_statements(&obj);
     if (make_room(&obj) == RESULT_OK) {

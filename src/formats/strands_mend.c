@@ -154,6 +154,50 @@ static Result fail_too_long(const FormatSource *source, uint32_t s, uint32_t siz
                      size, STRANDS_MAX_SIZE);
 }
 
+// --- Padding behind the tips, in arrays of equal sizes.
+
+static bool is_zero(const float p[3])
+{
+    return p[0] == 0 && p[1] == 0 && p[2] == 0;
+}
+
+// The end of a strand without the zeros behind its tip, if they are farther from the tip than twice
+// the strand's longest segment (by the largest coordinate). `end` if there are none.
+static uint32_t find_tip(const Strands *strands, uint32_t begin, uint32_t end)
+{
+    uint32_t tip = end;
+    double longest = 0, jump = 0;
+    while (tip > begin && is_zero(strands->position[tip - 1])) --tip;
+    if (tip == end || tip < begin + 2) return end;
+    for (uint32_t v = begin + 1; v < tip; ++v)
+        for (int k = 0; k < 3; ++k)
+            longest = fmax(longest, fabs((double)strands->position[v][k] -
+                                         (double)strands->position[v - 1][k]));
+    for (int k = 0; k < 3; ++k) jump = fmax(jump, fabs((double)strands->position[tip - 1][k]));
+    return jump > 2 * longest ? tip : end;
+}
+
+// Whether so many strands end with zeros (at least 2, and 1 of 50) that these are padding.
+static bool has_zeros(const Strands *strands)
+{
+    uint32_t padded = 0;
+    for (uint32_t s = 0; s < strands->strand_count; s++)
+        padded +=
+            find_tip(strands, strands->first[s], strands->first[s + 1]) != strands->first[s + 1];
+    return padded >= 2 && padded >= strands->strand_count / 50;
+}
+
+// The end of strand s, which begins at `begin`, without its padding.
+static uint32_t find_end(const FormatSource *source, uint32_t s, uint32_t end, bool zeros,
+                         StrandsReport *report)
+{
+    const Strands *strands = &source->strands;
+    uint32_t begin = strands->first[s], tip = zeros ? find_tip(strands, begin, end) : end;
+    if (tip < end) note(report, DEFECT_PADDING, vertex_place(source, s, tip));
+    while (source->pads && tip > begin && !isfinite(strands->position[tip - 1][0])) --tip;
+    return tip > begin ? tip : end;
+}
+
 // Mends positions (in metres) in place, so that they keep the promises of strands_read. Counts the
 // defects in `report`. `kept_from`, [vertex_count] or NULL, receives the old index of each vertex
 // that is kept. Fails (RESULT_BAD_INPUT) only if a strand has too many vertices.
@@ -165,13 +209,15 @@ static Result mend(FormatSource *source, const char *path, uint32_t *kept_from,
     uint64_t unread = source->unread_bytes < UINT32_MAX ? source->unread_bytes : UINT32_MAX;
     report->defects[DEFECT_UNREAD] = (Defect){(uint32_t)unread, source->unread_at};
     uint32_t kept_strands = 0, kept_vertices = 0, begin = 0;
+    bool zeros = has_zeros(strands);
     for (uint32_t s = 0; s < strands->strand_count; s++) {
         // Mending is in place: after strand s was moved, first[s + 1] still holds the file's value.
         uint32_t end = strands->first[s + 1];
         strands->first[s] = begin;
         begin = end;
+        uint32_t tip = find_end(source, s, end, zeros, report);
         mend_attributes(source, s, report);
-        uint32_t size = mend_strand(source, s, end, kept_vertices, kept_from, report);
+        uint32_t size = mend_strand(source, s, tip, kept_vertices, kept_from, report);
         if (size > STRANDS_MAX_SIZE) return fail_too_long(source, s, size, path, error);
         if (size == 0) continue;
         move_strand(strands, kept_strands, s);

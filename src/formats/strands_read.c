@@ -65,6 +65,10 @@ static Result refuse_unknown(Reader *reader, bool xgen)
         return reader_fail(reader,
                            "not supported: GLTF, a scene of triangles: it keeps no strands: export "
                            "Alembic, USD or Wavefront lines");
+    if (reader->data[strspn((const char *)reader->data, " \t\r\n")] == '{' &&
+        (memmem(reader->data, head, "\"sections\"", 10) ||
+         memmem(reader->data, head, "\"bodies\"", 8)))
+        return reader_fail(reader, "a scene file, not a hair file: tractrix-render draws it");
     if (is_table(reader))
         return reader_fail(reader,
                            "a table of numbers, not a hair file: save it with numpy as an array of "
@@ -279,7 +283,10 @@ static Result read_source(FormatSource *source, const char *name, const Bytes *b
                           const StrandsReadOptions *options, StrandsReport *report, Error *error)
 {
     bool xgen = is_xgen(bytes);
-    FormatKind kind = xgen ? FORMAT_KINDS : format_detect(bytes);
+    // Every text that begins with # might be a Wavefront file.
+    bool other =
+        xgen || (bytes->size && bytes->data[0] == '#' && foreign_find(bytes->data, bytes->size));
+    FormatKind kind = other ? FORMAT_KINDS : format_detect(bytes);
     const Format *format = kind < FORMAT_KINDS ? FORMAT_TABLE[kind] : NULL;
     Reader reader = format && format->text ? reader_begin_text(name, bytes, error)
                                            : reader_begin_binary(name, bytes, error);

@@ -120,6 +120,11 @@ void strands_report_describe(const StrandsReport *report, const char *path, Defe
         [DEFECT_OVER_LIMIT] = {"strand of more than maxNumVerticesInStrand vertices",
                                "strands of more than maxNumVerticesInStrand vertices",
                                "kept whole"},
+        [DEFECT_PADDING] =
+            {"strand that jumps from its tip to the origin, as padding with zeros does",
+             "strands that jump from their tip to the origin, as padding with zeros "
+             "does",
+             "cut off at the tip"},
         [DEFECT_UNREAD] = {"byte after all known arrays", "bytes after all known arrays",
                            "not read"},
     };

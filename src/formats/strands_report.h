@@ -13,6 +13,7 @@ typedef enum DefectKind {
     DEFECT_COINCIDENT, // vertices that coincide with the previous one: merged with it
     DEFECT_ATTRIBUTE,  // attribute values that are not finite: replaced by 0 (UVs) or 1
     DEFECT_OVER_LIMIT, // strands longer than the file's own maxNumVerticesInStrand: kept whole
+    DEFECT_PADDING,    // strands that end with zeros behind their tip: cut off
     DEFECT_UNREAD,     // bytes after all known arrays: not read
     DEFECT_KINDS
 } DefectKind;

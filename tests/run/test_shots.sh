@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Shots: animated hair is drawn frame by frame, and frames have the numbers of the body or hair file in all outputs.
+set -euo pipefail
+render=$TRACTRIX_BIN/tractrix-render convert=$TRACTRIX_BIN/tractrix-convert
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+passed=0
+good() { passed=$((passed + 1)); }
+quick=(--look plain --followers 0 --scalp none --size 48x36 --quiet)
+
+cat >sway.usda <<'U'
+#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Y"
+    timeCodesPerSecond = 24
+)
+def BasisCurves "hair"
+{
+    uniform token type = "linear"
+    int[] curveVertexCounts = [2]
+    float[] widths = [0.02] (interpolation = "constant")
+    point3f[] points.timeSamples = { 1001: [(0, 0, 0), (0, 0.1, 0)], 1002: [(0, 0, 0), (0.1, 0, 0)], 1003: [(0, 0, 0), (0, -0.1, 0)] }
+}
+U
+
+# A played file: three frames at its rate, with its numbers, which differ; what is exported is what was read.
+"$render" sway.usda "${quick[@]}" -o played/ --export played.usda
+[ "$(ls played | tr '\n' ' ')" = "frame_1001.png frame_1002.png frame_1003.png " ] && good
+"$TRACTRIX_BIN/tractrix-compare" played/frame_1001.png played/frame_1003.png >/dev/null && exit 1
+good
+grep -q 'timeCodesPerSecond = 24$' played.usda && grep -q 'startTimeCode = 1001' played.usda && good
+grep -q '^ *1002: \[(0, 0, 0), (0.1, 0, 0)\]' played.usda && grep -q 'widths = \[0.02' played.usda && good
+
+# --first and --last are these numbers, and others are refused.
+"$render" sway.usda "${quick[@]}" --first 1002 --last 1002 -o one/
+[ "$(ls one)" = frame_1002.png ] && good
+status=0
+"$render" sway.usda "${quick[@]}" --first 1 -o one/ 2>message || status=$?
+[ $status = 2 ] && grep -q -- '--first 1: expected 1001 to 1003, since --frames is 3' message && good
+
+# A simulation starts from any frame; a cache keeps the numbers.
+"$render" sway.usda "${quick[@]}" --algo split --hair-frame 1003 --frames 1 --frame-number 7 --cache sim.cache --export rest.npz
+"$convert" sim.cache -o sim.usda >/dev/null
+grep -q 'points = \[(0, 0, 0), (0, -0.1, 0)\]' sim.usda && good
+"$convert" sway.usda --frame-number 1 -o shifted.usda >/dev/null
+grep -q 'startTimeCode = 1$' shifted.usda && good
+echo "$passed passed, $((8 - passed)) failed, 0 skipped"
