@@ -274,7 +274,14 @@ static Result read_file(ConvertInput *input, const char *path, int file, Strands
                         StrandsFrames *frames, Error *error)
 {
     StrandsReport report;
-    TRY(strands_read_frames(strands, frames, path, &input->options, &report, error));
+    StrandsReadOptions options = input->options;
+    if (options.recenters && input->centred) {
+        options.recenters = false;
+        options.origin = input->origin;
+    }
+    TRY(strands_read_frames(strands, frames, path, &options, &report, error));
+    if (!input->centred) memcpy(input->origin, strands->origin, sizeof input->origin);
+    input->centred = true;
     report_mended(input, &report, file, path);
     input->features |= strands_features(strands);
     if (input->reports[file].strands == 0) input->reports[file] = report;

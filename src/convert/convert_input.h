@@ -33,6 +33,8 @@ typedef struct ConvertInput {
     bool says_guess;   // messages include guesses of unit and axis
     bool wants_frames; // read all frames of a single file with time, otherwise only the first
     bool cached, numbered, framed; // if none of these, the files are one frame
+    bool centred;                  // the first file has set `origin`
+    double origin[3];              // m, y up: of all files (Strands.origin)
     Strands still;        // of a single file: until it is handed on, or, if framed, to the end
     StrandsFrames frames; // framed
     CacheStrands cache;

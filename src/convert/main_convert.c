@@ -312,6 +312,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
                                             .up = (UpAxis)command->up,
                                             .strict = command->strict,
                                             .seed = (uint32_t)command->seed,
+                                            .recenters = true,
                                             .points_per_strand = (uint32_t)command->points,
                                             .array = command->array,
                                             .objects = command->object},
@@ -358,6 +359,7 @@ static Result read_rigid_mesh(Job *job, const MeshSequenceOptions *options, Erro
     double unit = guesses ? 1 : options->unit > 0 ? options->unit : options->otherwise_unit;
     Result result = mesh_read(&job->mesh, path, (float)unit, up_z, error);
     if (result == RESULT_OK && guesses) unit = guess_unit(&job->mesh);
+    if (result == RESULT_OK) mesh_take_away(&job->mesh, options->origin);
     // If hair and mesh are in metres, nothing was assumed that a reader would not expect.
     if (result == RESULT_OK && guesses && !job->command.quiet &&
         (unit != 1 || options->otherwise_unit != 1))
@@ -379,6 +381,7 @@ static Result read_mesh(Job *job, Error *error)
         .otherwise_up_z = first && first->up_z,
         .rest = "",
         .otherwise_rate = 1,
+        .origin = {job->input.origin[0], job->input.origin[1], job->input.origin[2]},
     };
     if (!path) return RESULT_OK;
     MeshSequence sequence = {0};

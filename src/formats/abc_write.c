@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Writes the curve schema with its properties in the same order as Alembic's own writer (AbcGeom).
 #include "formats/abc_write.h"
+#include "strands/strands_edit.h"
 
 #include <errno.h>
 #include <math.h>
@@ -162,9 +163,21 @@ static uint64_t put_curves(AbcWriter *writer)
 static uint64_t put_transform(AbcWriter *writer)
 {
     OgawaCompound own = {0}, top = {0};
-    OgawaBlock inherits = {0};
+    OgawaBlock inherits = {0}, steps = {0}, values = {0};
+    if (strands_are_far(writer->strands)) {
+        enum { TRANSLATE = 1 }; // AbcGeom's XformOperationType
+        double o[3];
+        strands_find_origin(writer->strands, writer->options.metres_per_unit, writer->options.up_z,
+                            o);
+        ogawa_add_number(&steps, TRANSLATE << 4, 1);
+        for (int k = 0; k < 3; ++k) ogawa_add_double(&values, o[k]);
+    }
     ogawa_add_number(&inherits, 1, 1);
     ogawa_add_one(&writer->ogawa, &own, ".inherits", "", false, OGAWA_BOOL, 1, &inherits);
+    if (steps.size) {
+        ogawa_add_one(&writer->ogawa, &own, ".ops", "", false, OGAWA_U8, 1, &steps);
+        ogawa_add_one(&writer->ogawa, &own, ".vals", "", false, OGAWA_DOUBLE, 3, &values);
+    }
     add_version(writer, &own);
     ogawa_add_compound(&writer->ogawa, &top, ".xform", "schema=AbcGeom_Xform_v3", &own);
     return ogawa_put_compound(&writer->ogawa, &top);

@@ -104,6 +104,8 @@ typedef struct FormatSource {
                             // means 1
     double rotation[3];     // about x, y, z, radians; applied in the order z, x, y
     double translation[3];
+    double origin[3]; // the file's unit and axes: what the reader has taken away from positions
+                      // that are far from 0, in double precision
     bool rotation_was_deg;    // guessed from its size
     uint32_t over_limit;      // strands with more vertices than the file's own
                               // maxNumVerticesInStrand

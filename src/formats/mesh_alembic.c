@@ -22,6 +22,7 @@ typedef struct AbcMeshes {
     Alembic alembic;
     AbcMesh *mesh; // [count]
     uint32_t count;
+    double origin[3];           // taken away from all positions
     uint32_t sampling, samples; // those of the mesh with the most samples
 } AbcMeshes;
 
@@ -179,6 +180,7 @@ static void place(AbcMeshes *all, const AbcMesh *mesh, double time, float (*to)[
         if (share > 0 && share < 1) next = read_sample(all, mesh, b);
     }
     alembic_matrix(&all->alembic, mesh->object, time, matrix);
+    for (int k = 0; k < 3; ++k) matrix[3][k] -= all->origin[k];
     reader_work(all->alembic.file.reader, mesh->count + 1, 50);
     for (uint64_t v = 0; v < mesh->count && reader_ok(all->alembic.file.reader); ++v) {
         double p[3];
@@ -203,11 +205,16 @@ static void read(MeshSamples *samples, Reader *reader)
     samples->count = frames.count;
     for (uint32_t i = 0; i < all.count && reader_ok(reader); ++i)
         read_faces(&all, &all.mesh[i], samples);
-    if (reader_ok(reader) && mesh_samples_create(samples, reader))
+    if (reader_ok(reader) && mesh_samples_create(samples, reader)) {
+        double m[4][4];
+        alembic_matrix(&all.alembic, all.mesh[0].object, frames.start, m);
+        mesh_samples_find_origin(samples, m[3]);
+        memcpy(all.origin, samples->origin, sizeof all.origin);
         for (uint32_t s = 0; s < frames.count && reader_ok(reader); ++s)
             for (uint32_t i = 0; i < all.count; ++i)
                 place(&all, &all.mesh[i], ogawa_frame_time(file, &frames, s),
                       samples->position + s * samples->vertex_count + all.mesh[i].first);
+    }
     samples->rate = frames.rate;
     samples->first = frames.rate > 0 ? frames.start * frames.rate : 0;
     samples->unit = file->unit;

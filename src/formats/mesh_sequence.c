@@ -36,6 +36,14 @@ bool mesh_samples_create(MeshSamples *samples, Reader *reader)
     return samples->position;
 }
 
+void mesh_samples_find_origin(MeshSamples *samples, const double translation[3])
+{
+    bool far = false;
+    for (int k = 0; k < 3; ++k)
+        far = far || (fabs(translation[k]) > 1000 && fabs(translation[k]) < 1e15);
+    for (int k = 0; k < 3 && far; ++k) samples->origin[k] = round(translation[k]);
+}
+
 void mesh_samples_note(MeshSamples *samples, const char *format, ...)
 {
     size_t used = strlen(samples->note);
@@ -147,6 +155,7 @@ static Result read_numbered(MeshSequence *sequence, Mesh *mesh, const Target *ta
         char *name = target_name_frame(target, i);
         if (!name) result = error_set(error, RESULT_FAILED, "no memory for a name");
         THEN(result, mesh_read(&next, name, unit, up_z, error));
+        if (result == RESULT_OK) mesh_take_away(&next, options->origin);
         THEN(result, compare(&next, mesh, name, than, error));
         if (result == RESULT_OK)
             memcpy(mesh_sequence_at(sequence, (uint32_t)(i - first)), next.position,
@@ -189,11 +198,17 @@ static Result check_finite(const MeshSamples *samples, const char *path, Error *
     return RESULT_OK;
 }
 
-static void convert(MeshSamples *samples, float unit, bool up_z)
+static void convert(MeshSamples *samples, float unit, bool up_z, const double origin[3])
 {
+    bool far = false;
+    for (int k = 0; k < 3; ++k) far = far || samples->origin[k] != 0 || origin[k] != 0;
+    // The scene's origin in the file's axes.
+    const double away[3] = {origin[0], up_z ? -origin[2] : origin[1], up_z ? origin[1] : origin[2]};
     for (uint64_t i = 0; i < samples->count * samples->vertex_count; ++i) {
         float *p = samples->position[i], y;
-        for (int k = 0; k < 3; ++k) p[k] *= unit;
+        for (int k = 0; k < 3; ++k)
+            p[k] =
+                far ? (float)((p[k] + samples->origin[k]) * (double)unit - away[k]) : p[k] * unit;
         if (up_z) y = p[1], p[1] = p[2], p[2] = -y;
     }
 }
@@ -237,7 +252,7 @@ static Result take_samples(MeshSequence *sequence, Mesh *mesh, MeshSamples *samp
     int up_z = options->up_z >= 0   ? options->up_z
                : samples->up_z >= 0 ? samples->up_z
                                     : options->otherwise_up_z;
-    convert(samples, (float)unit, up_z == 1);
+    convert(samples, (float)unit, up_z == 1, options->origin);
     TRY(check_finite(samples, path, error));
     TRY(make_mesh(mesh, samples, rest, path, error));
     sequence->times.count = (uint32_t)samples->count;
@@ -282,7 +297,9 @@ static Result read_rest(Mesh *rest, const MeshSequenceOptions *options, Error *e
     if (!*options->rest) return RESULT_OK;
     float unit = (float)(options->unit > 0 ? options->unit : options->otherwise_unit);
     bool up_z = (options->up_z >= 0 ? options->up_z : options->otherwise_up_z) == 1;
-    return mesh_read(rest, options->rest, unit, up_z, error);
+    TRY(mesh_read(rest, options->rest, unit, up_z, error));
+    mesh_take_away(rest, options->origin);
+    return RESULT_OK;
 }
 
 static Result read_all(MeshSequence *sequence, Mesh *mesh, Mesh *rest, const char *path,

@@ -28,6 +28,7 @@ typedef struct MeshSequenceOptions {
     double rate, otherwise_rate; // samples per second; 0: as the file says, otherwise the second
                                  // value
     double start;                // s
+    double origin[3];            // m, y up: taken away from all positions
     bool linear;
 } MeshSequenceOptions;
 
@@ -37,6 +38,7 @@ typedef struct MeshSamples {
     float (*position)[3];    // [count * vertex_count]
     uint32_t (*triangle)[3]; // [triangle_count], below vertex_count; NULL if the file has no faces
     uint64_t triangle_count;
+    double origin[3];    // the file's unit and axes: taken away by the reader in double precision
     double rate, unit;   // 0 if the file does not say
     double first;        // number of the first sample, in frames of this rate
     int up_z;            // -1 if the file does not say
@@ -55,6 +57,9 @@ extern const MeshSequenceFormat MESH_SEQUENCE_NPZ, MESH_SEQUENCE_NPY, MESH_SEQUE
 
 // Allocates the positions. Fails the reader if memory is short or the counts exceed it.
 bool mesh_samples_create(MeshSamples *samples, Reader *reader);
+
+// Sets the samples' origin to a translation in whole units if it is far from 0 (beyond 1,000).
+void mesh_samples_find_origin(MeshSamples *samples, const double translation[3]);
 
 // Appends to the note (printf style), separated by "; "; cut if it is too long.
 void mesh_samples_note(MeshSamples *samples, const char *format, ...)

@@ -27,6 +27,7 @@ typedef struct UsdMeshes {
     UsdStage stage;
     UsdMesh *mesh; // [count] only meshes with points
     FormatWishes wishes;
+    double origin[3];                       // taken away from all positions
     uint32_t count, kept, left_out, curves; // the first `kept` meshes are read
 } UsdMeshes;
 
@@ -251,6 +252,7 @@ static void place(const UsdMeshes *all, const UsdMesh *mesh, double time, float 
     const double share = usd_samples_find(&mesh->points, time, &a, &b);
     double m[4][4];
     usd_stage_find_matrix(&all->stage, mesh->prim, time, m);
+    for (int k = 0; k < 3; ++k) m[3][k] -= all->origin[k];
     reader_work(all->reader, mesh->points.sample[0].count / 3 + 1, 50);
     for (size_t v = 0; v < mesh->points.sample[0].count / 3 && reader_ok(all->reader); ++v) {
         double p[3];
@@ -268,6 +270,10 @@ static void read_positions(UsdMeshes *all, const UsdTimes *times, MeshSamples *s
     Reader *reader = all->reader;
     samples->count = times->count ? times->count : 1;
     if (!mesh_samples_create(samples, reader)) return;
+    double m[4][4];
+    usd_stage_find_matrix(&all->stage, all->mesh[0].prim, times->count ? times->time[0] : 0, m);
+    mesh_samples_find_origin(samples, m[3]);
+    memcpy(all->origin, samples->origin, sizeof all->origin);
     for (uint64_t s = 0; s < samples->count && reader_ok(reader); ++s)
         for (uint32_t i = 0; i < all->kept; ++i)
             place(all, &all->mesh[i], times->count ? times->time[s] : 0,

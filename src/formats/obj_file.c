@@ -129,17 +129,6 @@ static bool link_edges(const Obj *obj, const Edges *edges)
     return true;
 }
 
-// Whether the edges make chains with ends only: a chain has one vertex more than edges.
-static bool are_chains(const Obj *obj, const Edges *edges)
-{
-    uint64_t ends = 0, used = 0;
-    for (uint64_t v = 0; v < obj->vertices; ++v) {
-        ends += edges->next[v][0] >= 0 && edges->next[v][1] < 0;
-        used += edges->next[v][0] >= 0;
-    }
-    return used == edges->count + ends / 2;
-}
-
 static void add_chain(Obj *obj, const Edges *edges, uint32_t root)
 {
     Strands *strands = &obj->source->strands;
@@ -167,15 +156,17 @@ static bool read_chains(Obj *obj)
                    .seen = reader_calloc(reader, obj->vertices, 1)};
     bool good = edges.end && edges.next && edges.seen;
     if (good) read_edges(obj, &edges);
-    good = good && reader_ok(reader) && link_edges(obj, &edges) && are_chains(obj, &edges);
+    good = good && reader_ok(reader) && link_edges(obj, &edges);
     for (uint32_t v = 0; v < obj->vertices && good; ++v)
         if (!edges.seen[v] && edges.next[v][0] >= 0 && edges.next[v][1] < 0)
             add_chain(obj, &edges, v);
+    for (uint64_t v = 0; v < obj->vertices && good; ++v) // none may be closed
+        good = edges.seen[v] || edges.next[v][0] < 0;
     if (!good && reader_ok(reader)) {
         before.memory = reader->memory;
         before.work = reader->work;
         *reader = before;
-        obj->read = 0;
+        obj->read = obj->strands = obj->used = 0;
     }
     free(edges.end);
     free(edges.next);

@@ -4,6 +4,7 @@
 #include "formats/abc_write.h"
 #include "strands/strands_edit.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -263,6 +264,32 @@ static Result join(Made *made, Strands *all)
     return RESULT_OK;
 }
 
+// The matrix of an object to the world without the origin.
+static void find_matrix(const SceneHair *hair, int node, double time, double matrix[4][4])
+{
+    hair->find_matrix(hair->file, node, time, matrix);
+    for (int k = 0; k < 3; ++k) matrix[3][k] -= hair->origin[k];
+}
+
+// Float32 has steps of 1/16384 from here on, in the file's unit.
+static const double FAR = 1000;
+
+// Hair that is far from the world's zero is placed relative to its first point, in whole units.
+static void find_origin(Made *made)
+{
+    SceneHair *hair = made->hair;
+    const BasisCurves *curves = &made->object[0]->curves;
+    const float *first = curves->points.sample[0].value;
+    double m[4][4], p[3];
+    hair->find_matrix(hair->file, made->object[0]->node, hair->time_count ? hair->time[0] : 0, m);
+    for (int k = 0; k < 3; ++k)
+        p[k] = (double)first[0] * m[0][k] + (double)first[1] * m[1][k] +
+               (double)first[2] * m[2][k] + m[3][k];
+    bool far = fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2]))) > FAR;
+    for (int k = 0; k < 3 && far; ++k)
+        if (fabs(p[k]) < 1e15) hair->origin[k] = round(p[k]);
+}
+
 // Writes the positions of the kept strands at a time to `to`.
 static void place_all(const Made *made, double time, float (*to)[3])
 {
@@ -272,7 +299,7 @@ static void place_all(const Made *made, double time, float (*to)[3])
     for (uint32_t i = 0; i < made->count; ++i) {
         const Strands *set = &made->sets[i];
         double matrix[4][4];
-        hair->find_matrix(hair->file, made->object[i]->node, time, matrix);
+        find_matrix(hair, made->object[i]->node, time, matrix);
         if (!reader_work(hair->reader, (uint64_t)set->vertex_count + set->strand_count, 200))
             return;
         basis_curves_place(&made->object[i]->curves, set, time, matrix, at);
@@ -340,6 +367,8 @@ static Result make_source(Made *made)
     source->fps = times.fps;
     source->first_frame = times.first_frame;
     source->thickness_unit = widths;
+    find_origin(made);
+    memcpy(source->origin, hair->origin, sizeof source->origin);
     TRY(set_places(made));
     TRY(make_frames(made));
     return RESULT_OK;

@@ -42,6 +42,7 @@ typedef struct SceneHair {
     uint32_t count, room;
     double *time; // [time_count] of the frames, or only of the first one
     uint32_t time_count;
+    double origin[3];  // taken away from all positions
     uint32_t features; // STRANDS_HAS_..., of some objects only, and so lost
     // The reader's:
     void *file;

@@ -4,6 +4,7 @@
 #include "base/doubles.h"
 #include "formats/foreign.h"
 #include "formats/strands_mend.h"
+#include "formats/strands_numbered.h"
 #include "strands/strands_edit.h"
 
 #include <math.h>
@@ -153,7 +154,7 @@ static void make_rotation(const double angle[3], double r[3][3])
 // if `up_z`. Computed in double and rounded once. If nothing is to be converted, bits do not
 // change.
 static void convert_positions(const FormatSource *source, float (*positions)[3], size_t count,
-                              double unit, bool up_z)
+                              double unit, bool up_z, const double origin[3])
 {
     double rotation[3][3], scale = source->scale != 0.0 ? source->scale : 1.0;
     make_rotation(source->rotation, rotation);
@@ -168,21 +169,45 @@ static void convert_positions(const FormatSource *source, float (*positions)[3],
         // Adding 0 would turn -0 into 0.
         for (int i = 0; i < 3; i++)
             if (source->translation[i] != 0.0) q[i] += source->translation[i];
-        position[0] = (float)(q[0] * unit);
-        position[1] = (float)((up_z ? q[2] : q[1]) * unit);
-        position[2] = (float)((up_z ? -q[1] : q[2]) * unit);
+        for (int i = 0; i < 3; i++)
+            if (source->origin[i] != 0.0) q[i] += source->origin[i];
+        double to[3] = {q[0] * unit, (up_z ? q[2] : q[1]) * unit, (up_z ? -q[1] : q[2]) * unit};
+        for (int i = 0; i < 3; i++)
+            position[i] = (float)(origin[i] != 0.0 ? to[i] - origin[i] : to[i]);
     }
 }
 
-static void convert(FormatSource *source, double unit, bool up_z)
+// The middle of the hair in whole metres, y up, if it is far from 0 compared with its size.
+static void find_origin(const FormatSource *source, double unit, bool up_z, double origin[3])
+{
+    const Strands *strands = &source->strands;
+    double middle[3] = {0}, scale = source->scale != 0.0 ? source->scale : 1.0;
+    double diagonal = measure_diagonal(source, false) * unit;
+    memset(origin, 0, 3 * sizeof *origin);
+    if (strands->vertex_count == 0) return;
+    for (int k = 0; k < 3; k++)
+        middle[k] = ((double)strands->position[0][k] * scale + source->origin[k]) * unit;
+    double largest = fmax(fabs(middle[0]), fmax(fabs(middle[1]), fabs(middle[2])));
+    if (!(largest > 100 && largest > 20 * diagonal && largest < 1e12)) return;
+    origin[0] = round(middle[0]);
+    origin[1] = round(up_z ? middle[2] : middle[1]);
+    origin[2] = round(up_z ? -middle[1] : middle[2]);
+}
+
+static void convert(FormatSource *source, double unit, bool up_z, const StrandsReadOptions *options)
 {
     Strands *strands = &source->strands;
+    if (options->recenters)
+        find_origin(source, unit, up_z, strands->origin);
+    else if (options->origin)
+        memcpy(strands->origin, options->origin, sizeof strands->origin);
+    const double *origin = strands->origin;
     double scale = source->scale != 0.0 ? source->scale : 1.0;
     double of_thickness = source->thickness_unit > 0 ? source->thickness_unit : unit;
-    convert_positions(source, strands->position, strands->vertex_count, unit, up_z);
+    convert_positions(source, strands->position, strands->vertex_count, unit, up_z, origin);
     if (source->frames)
         convert_positions(source, source->frames, (size_t)source->samples * strands->vertex_count,
-                          unit, up_z);
+                          unit, up_z, origin);
     for (uint32_t v = 0; strands->vertex_thickness && v < strands->vertex_count; v++)
         strands->vertex_thickness[v] =
             (float)(strands->vertex_thickness[v] * of_thickness * fabs(scale));
@@ -250,7 +275,7 @@ static Result finish(FormatSource *source, const char *name, const StrandsReadOp
     report->unit_used = report->unit_guessed ? guess_unit(source, format) : known;
     report->up_guessed = up == UP_AUTO;
     report->up_z = report->up_guessed ? format->up_z : up == UP_Z;
-    convert(source, (double)report->unit_used, report->up_z);
+    convert(source, (double)report->unit_used, report->up_z, options);
     TRY(strands_mend(source, name, report, error));
     const Strands *strands = &source->strands;
     if (source->shuffle && strands->strand_count > 1)
@@ -341,6 +366,8 @@ Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *
     if (frames) *frames = (StrandsFrames){0};
     if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
     Bytes bytes;
+    if (strands_is_numbered(path))
+        return strands_read_numbered(strands, frames, path, options, report, error);
     TRY(bytes_read_input(&bytes, path, error));
     // A byte order mark hides a text format from detection. Binary files are detected with it,
     // since their first number may have the same bytes.

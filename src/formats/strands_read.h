@@ -14,6 +14,9 @@ typedef struct StrandsReadOptions {
     uint32_t seed;              // of the shuffle of files with `is sorted 0`
     uint32_t points_per_strand; // for files of points without strands; 0: find it
     const char *array;          // name of the positions in .npz; NULL or "": the usual names
+    bool recenters;             // hair that is far from the world's zero gets an origin of its own
+                                // (Strands.origin): beyond 100 m and 20 times its size
+    const double *origin;       // [3] m, y up: the origin, unless `recenters`; NULL: 0
     const char *objects;        // which objects of a scene file; NULL or "": all
                                 // (format_wants_object)
 } StrandsReadOptions;
@@ -56,7 +59,8 @@ Result strands_read(Strands *strands, const char *path, const StrandsReadOptions
                     StrandsReport *report, Error *error);
 
 // Like strands_read, but with all frames. Only the first frame is mended; the others keep its
-// remaining vertices. RESULT_BAD_INPUT for a frame with a coordinate that is not finite or beyond
+// remaining vertices. A path with %d or %04d that is no file stands for numbered files, each a frame
+// (strands_numbered.h). RESULT_BAD_INPUT for a frame with a coordinate that is not finite or beyond
 // 1000 km.
 Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *path,
                            const StrandsReadOptions *options, StrandsReport *report, Error *error);

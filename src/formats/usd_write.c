@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "formats/usd_write.h"
+#include "strands/strands_edit.h"
 
 #include "base/decimal.h"
 
@@ -184,6 +185,16 @@ static void begin(UsdWriter *writer, const OutFile *file, const Strands *strands
     put_metadata(stream, strands);
     fprintf(stream, "\n{\n    uniform token type = \"linear\"\n"
                     "    uniform token wrap = \"nonperiodic\"\n");
+    if (strands_are_far(strands)) {
+        double o[3];
+        char text[3][40];
+        strands_find_origin(strands, options->metres_per_unit, options->up_z, o);
+        for (int k = 0; k < 3; ++k) decimal_format_double(o[k], text[k], sizeof text[k]);
+        fprintf(stream,
+                "    double3 xformOp:translate = (%s, %s, %s)\n"
+                "    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
+                text[0], text[1], text[2]);
+    }
     put_attributes(writer);
 }
 

@@ -40,6 +40,9 @@ Result mesh_create_uv(Mesh *mesh, uint32_t uv_count, Error *error);
 // area; (0, 1, 0) if the sum is 0 or there are no triangles.
 void mesh_compute_normals(Mesh *mesh);
 
+// Subtracts an origin (m) from all positions.
+void mesh_take_away(Mesh *mesh, const double origin[3]);
+
 // The axis-aligned bounding box of all vertices; {0,0,0} twice for an empty mesh.
 void mesh_bounds(const Mesh *mesh, float low[3], float high[3]);
 // Its diagonal, in the unit of the positions.

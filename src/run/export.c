@@ -323,6 +323,12 @@ static Result write_file(const Exporter *exporter, int frame, Error *error)
 Result exporter_write(Exporter *exporter, int frame, Error *error)
 {
     TRY(read_positions(exporter, error));
+    double origin[3];
+    memcpy(origin, exporter->strands.origin, sizeof origin);
+    if (!frames_file_has_look(exporter->kind)) { // only scene files have transforms
+        strands_give_back_origin(&exporter->strands);
+        memcpy(exporter->strands.origin, origin, sizeof origin);
+    }
     if (exporter->options.animated)
         return frames_file_add(&exporter->frames, frame + exporter->target.offset,
                                (const float(*)[3])exporter->strands.position, error);

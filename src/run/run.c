@@ -235,9 +235,10 @@ static void report_camera(const Run *run)
     if (!params->verbose || moves || !(params->eye.automatic || params->target.automatic)) return;
     if (!params->eye.automatic) eye = params->eye.value;
     if (!params->target.automatic) target = params->target.value;
-    fprintf(stderr, "camera: --eye=%.9g,%.9g,%.9g --target=%.9g,%.9g,%.9g\n", (double)eye[0],
-            (double)eye[1], (double)eye[2], (double)target[0], (double)target[1],
-            (double)target[2]);
+    const double *o = run->scene.world_origin;
+    fprintf(stderr, "camera: --eye=%.9g,%.9g,%.9g --target=%.9g,%.9g,%.9g\n", (double)eye[0] + o[0],
+            (double)eye[1] + o[1], (double)eye[2] + o[2], (double)target[0] + o[0],
+            (double)target[1] + o[1], (double)target[2] + o[2]);
 }
 
 // Fits the camera to the hair, unless the scene sets the camera.

@@ -99,6 +99,67 @@ static Result pick_group(Strands *strands, StrandsFrames *frames, const Section 
     return error_prefix(error, result, "%s: --group: ", section->file);
 }
 
+// --- Far from the world's zero: all places are relative to Scene.world_origin.
+
+// Whether the scene's places can be moved: those that are formulas or keys stay.
+static bool can_recenter(const Scene *scene)
+{
+    return scene->plays && scene->body_count == 1 && !track_is_given(&scene->eye) &&
+           !track_is_given(&scene->target) && !scene->sections[0].given;
+}
+
+static void move_back(float point[3], const double origin[3])
+{
+    for (int k = 0; k < 3; ++k) point[k] = (float)(point[k] - origin[k]);
+}
+
+static void move_collider(Collider *collider, const double origin[3])
+{
+    float *numbers = collider->numbers;
+    switch (collider->kind) {
+    case COLLIDER_CAPSULE:
+        move_back(numbers + 4, origin);
+        move_back(numbers, origin);
+        break;
+    case COLLIDER_SPHERE:
+        move_back(numbers, origin);
+        break;
+    case COLLIDER_GROUND:
+        numbers[0] = (float)(numbers[0] - origin[1]);
+        break;
+    case COLLIDER_PLANE:
+        for (int k = 0; k < 3; ++k)
+            numbers[3] = (float)(numbers[3] - (double)numbers[k] * origin[k]);
+        break;
+    case COLLIDER_KINDS:
+        break;
+    }
+}
+
+// Moves the scene's places, once the first section's hair has its origin.
+static void recenter(Scene *scene, const Strands *first, FILE *messages)
+{
+    RunParams *run = &scene->run;
+    const double *o = first->origin;
+    memcpy(scene->world_origin, o, sizeof scene->world_origin);
+    if (o[0] == 0 && o[1] == 0 && o[2] == 0) return;
+    if (!run->eye.automatic) move_back(run->eye.value, o);
+    if (!run->target.automatic) move_back(run->target.value, o);
+    if (!run->floor_height.automatic)
+        run->floor_height.value = (float)(run->floor_height.value - o[1]);
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        if (scene->lights[i].kind != LIGHT_DIRECTIONAL) move_back(scene->lights[i].position, o);
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        move_back(scene->bodies[b].head.pivot, o);
+        for (uint32_t i = 0; i < scene->bodies[b].colliders.count; ++i)
+            move_collider(&scene->bodies[b].colliders.list[i], o);
+    }
+    if (messages)
+        fprintf(messages,
+                "the hair is %.4g m from the world's zero: places are relative to %g,%g,%g\n",
+                sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]), o[0], o[1], o[2]);
+}
+
 // --- Animated hair.
 
 static bool has_default(const Section *section, const char *name)
@@ -191,7 +252,9 @@ static Result load_section(Assets *assets, Scene *scene, uint32_t i, FILE *messa
                            Error *error)
 {
     const Section *section = &scene->sections[i];
-    const StrandsReadOptions options = read_options(scene, section);
+    StrandsReadOptions options = read_options(scene, section);
+    options.recenters = i == 0 && can_recenter(scene);
+    options.origin = scene->world_origin;
     if (section->given) return take_given(assets, i, section->given, error);
     activity_set("reading hair");
     bool plays = may_play(scene, section), all = plays || !section->params.hair_frame.automatic;
@@ -199,6 +262,7 @@ static Result load_section(Assets *assets, Scene *scene, uint32_t i, FILE *messa
     Result result = strands_read_frames(&assets->strands[i], all ? frames : NULL, section->file,
                                         &options, &assets->reports[i], error);
     activity_set(NULL);
+    if (result == RESULT_OK && options.recenters) recenter(scene, &assets->strands[i], messages);
     THEN(result, take_frame(&assets->strands[i], frames, section, error));
     if (!plays || frames->count < 2) strands_frames_destroy(frames);
     if (result == RESULT_OK && frames->count) result = play(assets, scene, i, messages, error);
@@ -230,6 +294,7 @@ static void warn_apart(const Body *body, FILE *messages)
 typedef struct BodyLoad {
     Assets *assets;
     const RunParams *run;
+    const double *origin; // the scene's
     SceneBody *body;
     Mesh *mesh;
     Body *shape;
@@ -327,11 +392,13 @@ static Result load_body(const BodyLoad *load, Error *error)
         .start = (double)params->mesh_start,
         .linear = params->mesh_motion == MESH_LINEAR,
     };
+    memcpy(options.origin, load->origin, sizeof options.origin);
     activity_set("reading the mesh");
     if (mesh_sequence_matches(params->mesh)) return load_sequence(load, &options, error);
     float unit = (float)(options.unit > 0 ? options.unit : options.otherwise_unit);
     bool up_z = (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1;
     Result result = mesh_read(load->mesh, params->mesh, unit, up_z, error);
+    if (result == RESULT_OK) mesh_take_away(load->mesh, load->origin);
     return strands_read_as_mesh(result, params->mesh, error);
 }
 
@@ -354,6 +421,7 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
     for (uint32_t b = 0; b < scene->body_count; ++b) {
         const BodyLoad load = {.assets = assets,
                                .run = &scene->run,
+                               .origin = scene->world_origin,
                                .body = &scene->bodies[b],
                                .mesh = &assets->meshes[b],
                                .shape = &assets->bodies[b],

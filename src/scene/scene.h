@@ -111,6 +111,8 @@ typedef struct Scene {
     Track eye, target;              // width 3, m; if not given, run.eye and run.target
     Track fov;                      // width 1, deg; if not given, run.fov
     Light lights[SCENE_MAX_LIGHTS]; // those of the look if the user gives none
+    double world_origin[3];         // m: taken away from all places of the scene by assets_load,
+                                    // because its hair is far from the world's zero
     bool plays;                     // animated hair files are played (set by programs that draw)
     bool own_lights;                // the user gives lights, or an empty list
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only

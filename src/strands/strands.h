@@ -30,7 +30,9 @@ typedef struct Strands {
     uint32_t followers;      // per guide, as the file asks for
     float follower_radius;   // metres, largest distance from the guide; 0 if the file has none
     bool both_ends_fixed;    // tips are fixed, too
-    Fibre fibre;             // as the file says, in SI units whatever the unit of positions
+    double origin[3]; // m, y up: the place in the file's world where the positions have their zero;
+                      // 0 unless the reader was asked to take it away (far from the world's zero)
+    Fibre fibre;      // as the file says, in SI units whatever the unit of positions
     // Unit (m) and axis of positions that were converted for a file by strands_to_unit. Otherwise
     // unit is 0, and positions are in metres with y up.
     double unit;

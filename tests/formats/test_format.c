@@ -294,6 +294,21 @@ static void lines_of_obj_files_are_strands(void **state)
     assert_int_equal(strands_size(&a, 0), 3);
     assert_int_equal(strands_size(&a, 1), 2);
     assert_true(a.position[3][0] == 5 && a.position[4][1] == 1 && a.position[6][1] == 1);
+    // Edges in any order and direction: the end with the lower number is the root.
+    static const char *const orders[] = {"l 1 2\nl 4 5\nl 2 3\nl 5 6\n",
+                                         "l 2 3\nl 1 2\nl 5 6\nl 4 5\n",
+                                         "l 1 2\nl 3 2\nl 4 5\nl 6 5\n"};
+    for (size_t i = 0; i < sizeof orders / sizeof *orders; ++i) {
+        char text[200];
+        snprintf(text, sizeof text, "v 0 0 0\nv 0 1 0\nv 0 2 0\nv 1 0 0\nv 1 1 0\nv 1 2 0\n%s",
+                 orders[i]);
+        Strands chains = read_obj(state, text, RESULT_OK, NULL);
+        assert_int_equal(chains.strand_count, 2);
+        for (int v = 0; v < 6; ++v)
+            assert_true(chains.position[v][0] == (float)(v / 3) &&
+                        chains.position[v][1] == (float)(v % 3));
+        strands_destroy(&chains);
+    }
     Strands edges = read_obj(state, "v 0 0 0\nv 0 1 0\nv 0 2 0\nl 1 2\nl 2 3\nl 1 3\n", RESULT_OK,
                              &error); // two edges of one strand, and an edge of another
     assert_int_equal(edges.strand_count, 2);

@@ -531,6 +531,49 @@ static void real_assets_are_read_whole(void **state)
     }
 }
 
+// Strands of 2, 3 and 4 vertices that an array of 4 points each pads with zeros, and one that ends
+// at the origin by itself.
+static void zeros_behind_the_tips_are_cut_off(void **state)
+{
+    (void)state;
+    Strands strands;
+    StrandsReport report;
+    const char *text =
+        "v 5 0 0\nv 5 .1 0\nv 0 0 0\nv 0 0 0\nv 6 0 0\nv 6 .1 0\nv 6 .2 0\nv 0 0 0\n"
+        "v 7 0 0\nv 7 .1 0\nv 7 .2 0\nv 7 .3 0\nv 0 .3 0\nv 0 .2 0\nv 0 .1 0\nv 0 0 0\n"
+        "l 1 2 3 4\nl 5 6 7 8\nl 9 10 11 12\nl 13 14 15 16\n";
+    assert_int_equal(reading_text(&strands, text, &METRES, &report, NULL), RESULT_OK);
+    for (uint32_t s = 0; s < 4; ++s) assert_int_equal(strands_size(&strands, s), s < 3 ? s + 2 : 4);
+    assert_int_equal(report.defects[DEFECT_PADDING].count, 2);
+    assert_int_equal(report.defects[DEFECT_COINCIDENT].count, 0);
+    strands_destroy(&strands);
+}
+
+// Two vertices 1 mm apart, 20 km away: their difference is that of the file.
+static void hair_far_away_keeps_its_form(void **state)
+{
+    (void)state;
+    const char *text =
+        "#usda 1.0\n(\nmetersPerUnit = 1\nupAxis = \"Z\"\n)\ndef Xform \"far\"\n{\n"
+        "double3 xformOp:translate = (20000, 0, 300)\n"
+        "uniform token[] xformOpOrder = [\"xformOp:translate\"]\ndef BasisCurves \"x\"\n{\n"
+        "uniform token type = \"linear\"\nint[] curveVertexCounts = [2]\n"
+        "point3f[] points = [(0.25, 0, 0), (0.25, 0, 0.001)]\n}\n}\n";
+    Strands strands;
+    StrandsReadOptions options = {.recenters = true};
+    assert_int_equal(reading_text(&strands, text, &options, NULL, NULL), RESULT_OK);
+    assert_true(strands.origin[0] == 20000 && strands.origin[1] == 300 && strands.origin[2] == 0);
+    assert_true(strands.position[0][0] == 0.25f && strands.position[0][1] == 0);
+    assert_true(strands.position[1][1] == 0.001f); // y is up
+    strands_destroy(&strands);
+    // The origin of another file.
+    const double origin[3] = {19999, 0, 0};
+    options = (StrandsReadOptions){.origin = origin};
+    assert_int_equal(reading_text(&strands, text, &options, NULL, NULL), RESULT_OK);
+    assert_true(strands.position[0][0] == 1.25f && strands.position[0][1] == 300);
+    strands_destroy(&strands);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -550,6 +593,8 @@ int main(void)
         cmocka_unit_test(formats_have_their_own_units_and_axes),
         cmocka_unit_test(the_strands_length_counts_as_the_box_does),
         cmocka_unit_test(the_guess_is_one_line),
+        cmocka_unit_test(zeros_behind_the_tips_are_cut_off),
+        cmocka_unit_test(hair_far_away_keeps_its_form),
         cmocka_unit_test(z_up_is_turned_to_y_up),
         cmocka_unit_test(strands_beyond_the_longest_are_refused),
         cmocka_unit_test(real_assets_are_read_whole),
