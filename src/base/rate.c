@@ -41,7 +41,6 @@ bool rate_parse(const char *text, double *rate)
     if (fraction) at = read_number(at + 1, &divisor);
     if (!at || *at || !(divisor > 0)) return false;
     number = fraction ? number / divisor : rate_snap(number);
-    if (!(number > 0) || !isfinite(number)) return false;
     *rate = number;
     return true;
 }

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// Parses "25", "23.976" or "24000/1001", with blanks around numbers. False if it is neither, or if
-// the rate is not finite or not above 0.
+// Parses "25", "23.976" or "24000/1001", with blanks around numbers. False if it is neither. The
+// caller checks the range: the rate may be infinite, 0 or less.
 bool rate_parse(const char *text, double *rate);
 
 // The rate that a decimal stands for: within 0.005 of N 1000/1001 (N: 24, 30, 48, 60, 120) that

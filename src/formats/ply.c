@@ -178,8 +178,10 @@ static uint32_t read_list(PlyFile *ply, const PlyProperty *property, uint32_t *l
     if (!reader_ok(reader)) return 0;
     uint64_t i = 0;
     for (; i < (uint64_t)count && (i < most || ply->text) && reader_ok(reader); i++) {
-        double number = read_number(ply, property->type, most > 0);
-        if (i < most && !(number >= 0 && number < 4294967295.0))
+        double number = read_number(ply, property->type, most > 0 && !ply->restarts);
+        if (i < most && ply->restarts && number == -1)
+            list[i] = PLY_RESTART;
+        else if (i < most && !(number >= 0 && number < 4294967295.0))
             reader_fail(reader, "%g in a list: expected a whole number from 0", number);
         else if (i < most)
             list[i] = (uint32_t)number;

@@ -43,12 +43,15 @@ typedef struct PlyElement {
     bool has[PLY_MOST_ROLES];
 } PlyElement;
 
+#define PLY_RESTART UINT32_MAX
+
 typedef struct PlyFile {
     Reader *reader;
     // The wanted properties by name; integers and lists come last.
     const char *const *roles;
     int role_count, first_whole, first_list;
     bool text, big; // big-endian
+    bool restarts;  // -1 in a list becomes PLY_RESTART
     PlyElement element[PLY_MOST_ELEMENTS];
     PlyProperty property[PLY_MOST_PROPERTIES];
     uint32_t element_count, property_count;

@@ -91,6 +91,36 @@ static void read_faces(PlyMesh *ply, const PlyElement *element)
     }
 }
 
+// Strips of triangles, in which each corner after the second one makes a triangle with the two
+// before it, every other one turned round. -1 begins another strip.
+static void read_strips(PlyMesh *ply, const PlyElement *element)
+{
+    Reader *reader = ply->reader;
+    if (!element->has[INDICES] && !element->has[INDEX])
+        reader_fail(reader, "strips without vertex_indices: expected a list of this name");
+    if (!ply->position) reader_fail(reader, "strips before vertices: expected vertices first");
+    if (!reader_ok(reader) || !ply_check_count(&ply->file, element)) return;
+    uint32_t most = reader_left(reader) < UINT32_MAX ? (uint32_t)reader_left(reader) : UINT32_MAX;
+    uint32_t *corner = reader_malloc(reader, (uint64_t)most + 1, sizeof *corner);
+    ply->file.restarts = true;
+    for (uint32_t s = 0; corner && s < element->count && reader_ok(reader); s++) {
+        double unused[ROLES];
+        uint32_t count = 0, begin = 0;
+        ply_read_row_list(&ply->file, element, unused, corner, most, &count);
+        for (uint32_t i = 0; i < count && reader_ok(reader); i++) {
+            bool turned = (i - begin) % 2;
+            if (corner[i] == PLY_RESTART)
+                begin = i + 1;
+            else if (i >= begin + 2)
+                add_face(ply, s,
+                         (uint32_t[]){corner[i - 2 + turned], corner[i - 1 - turned], corner[i]},
+                         3);
+        }
+    }
+    ply->file.restarts = false;
+    free(corner);
+}
+
 static void read_elements(PlyMesh *ply, float unit, bool up_z)
 {
     Reader *reader = ply->reader;
@@ -103,6 +133,8 @@ static void read_elements(PlyMesh *ply, float unit, bool up_z)
             read_vertices(ply, element, unit, up_z);
         else if (strcmp(element->name, "face") == 0)
             read_faces(ply, element);
+        else if (strcmp(element->name, "tristrips") == 0)
+            read_strips(ply, element);
         else if (ply_check_count(&ply->file, element) && element->property_count)
             for (uint32_t k = 0; k < element->count && reader_ok(reader); k++)
                 ply_read_row(&ply->file, element, unused);

@@ -80,6 +80,10 @@ Result strands_report_measure(StrandsReport *report, const Strands *strands, Err
     report->features = strands_features(strands);
     report->opaque = strands_are_opaque(strands);
     strands_bounds(strands, report->low, report->high);
+    for (int axis = 0; axis < 3; axis++) {
+        report->low[axis] = (float)(report->low[axis] + strands->origin[axis]);
+        report->high[axis] = (float)(report->high[axis] + strands->origin[axis]);
+    }
     if (strands->strand_count == 0) return RESULT_OK;
     double *lengths = malloc(strands->strand_count * sizeof *lengths);
     uint32_t *sizes = malloc(strands->strand_count * sizeof *sizes);

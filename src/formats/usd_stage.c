@@ -130,7 +130,7 @@ static void read_property(UsdStage *stage, int prim, void *object, char name[USD
     }
     char c = usd_text_peek(reader, true);
     while (c && c != '=' && c != '(' && c != '}' && c != '\n' && reader_ok(reader)) {
-        if (c == '"')
+        if (c == '"' || c == '<') // a0.mapper[ <path> ]
             usd_text_skip_value(reader);
         else
             usd_text_read_type(reader, name);
@@ -139,11 +139,13 @@ static void read_property(UsdStage *stage, int prim, void *object, char name[USD
     // Joints may be given on a parent, too.
     if (strncmp(name, "primvars:skel:jointIndices", 26) == 0) stage->prim[prim].skinned = true;
     if (usd_text_take(reader, '=')) read_property_value(stage, prim, object, name, &rate);
-    if (usd_text_peek(reader, true) != '(') return;
-    if (rate)
+    char after = usd_text_peek(reader, true);
+    if (after == '(' && rate)
         read_rate(reader, *rate);
-    else
+    else if (after == '(')
         usd_text_skip_value(reader);
+    if (usd_text_peek(reader, true) == '{')
+        usd_text_skip_value(reader); // of a relationship's target
 }
 
 // --- Metadata of a prim.

@@ -155,7 +155,11 @@ static Result add_map(uint64_t *hash, const char *path, Error *error)
 static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets, Error *error)
 {
     for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const StrandsFrames *frames = scene->sections[i].frames;
         *hash = add_strands(*hash, &assets->strands[i]);
+        if (frames)
+            *hash = add_array(*hash, frames->position,
+                              (size_t)frames->count * frames->vertices * sizeof *frames->position);
         TRY(add_map(hash, scene->sections[i].params.color_map, error));
     }
     if (assets->environment.parts)

@@ -170,7 +170,7 @@ static bool has_default(const Section *section, const char *name)
 // Whether the section's file is played if it is animated.
 static bool may_play(const Scene *scene, const Section *section)
 {
-    return scene->plays && !*scene->run.from_cache && section->params.hair_frame.automatic &&
+    return scene->plays && section->params.hair_frame.automatic &&
            (has_default(section, "algo") || strcmp(section->params.algo, "none") == 0);
 }
 

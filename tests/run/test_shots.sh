@@ -44,7 +44,7 @@ status=0
 # A simulation starts from any frame; a cache keeps the numbers.
 "$render" sway.usda "${quick[@]}" --algo split --hair-frame 1003 --frames 1 --frame-number 7 --cache sim.cache --export rest.npz
 "$convert" sim.cache -o sim.usda >/dev/null
-grep -q 'points = \[(0, 0, 0), (0, -0.1, 0)\]' sim.usda && good
+grep -q 'startTimeCode = 7' sim.usda && grep -q '7: \[(0, 0, 0), (0, -0.1, 0)\]' sim.usda && good
 "$convert" sway.usda --frame-number 1 -o shifted.usda >/dev/null
 grep -q 'startTimeCode = 1$' shifted.usda && good
 echo "$passed passed, $((8 - passed)) failed, 0 skipped"

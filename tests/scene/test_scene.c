@@ -387,7 +387,7 @@ static const struct {
     {"{" HAIR ", \"fps\": \"3/0\"}", "fps: got '3/0', expected a number from 0.001 to 10000"},
     {"{" HAIR ", \"fps\": null}", "fps: got null"},
     {"{" HAIR ", \"fps\": true}", "fps: got true"},
-    {"{" HAIR ", \"fps\": 0}", "(nearest: 1)"},
+    {"{" HAIR ", \"fps\": 0}", "(nearest: 0.001)"},
     {"{" HAIR ", \"frames\": 1.5}", "a whole number"},
     {"{" HAIR ", \"frames\": 99999999999}", "(nearest: 10000000)"},
     {"{" HAIR ", \"strict\": 1}", "strict: got 1, expected true or false"},
