@@ -183,6 +183,7 @@ static Result read(FormatSource *source, Reader *reader)
     reader_copy_floats(reader, layout.points, strands->position[0], 3 * (size_t)header.points);
     if (header.arrays & HAIR_HAS_THICKNESS)
         format_source_copy(reader, &strands->vertex_thickness, layout.thickness, header.points, 1);
+    strands->relative_widths = source->unit == 0; // those of other programs say no unit
     read_colors(strands, reader, &header, &layout);
     return reader->result;
 }

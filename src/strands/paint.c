@@ -387,7 +387,8 @@ float paint_auto_radius(const Strands *strands, uint32_t followers)
 float paint_file_radius(const SectionParams *params, const Strands *strands)
 {
     double mean = 0, longest = 0;
-    if (!params->radius.automatic || !params->file_thickness || !strands->vertex_thickness)
+    if (!params->radius.automatic || !params->file_thickness || !strands->vertex_thickness ||
+        strands->relative_widths)
         return 0;
     for (uint32_t v = 0; v < strands->vertex_count; ++v)
         mean += fabs((double)strands->vertex_thickness[v]) / strands->vertex_count;

@@ -25,7 +25,8 @@ typedef struct Strands {
     float (*vertex_uv)[2]; // [vertex_count]
     float *strand_thickness; // [strand_count], factor or width as the file says (TressFX)
     float *strand_group;     // [strand_count] integers from 0: group of the groom
-    float *vertex_thickness; // [vertex_count], metres (HAIR files)
+    float *vertex_thickness; // [vertex_count] widths, metres
+    bool relative_widths;    // they have no unit: only their ratios count
     float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
     uint32_t followers;      // per guide, as the file asks for
     float follower_radius;   // metres, largest distance from the guide; 0 if the file has none

@@ -195,6 +195,7 @@ Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Err
     other.follower_radius = strands->follower_radius;
     other.both_ends_fixed = strands->both_ends_fixed;
     other.fibre = strands->fibre;
+    other.relative_widths = strands->relative_widths;
     memcpy(other.origin, strands->origin, sizeof other.origin);
     strands_destroy(strands);
     *strands = other;
@@ -267,6 +268,8 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
     all->both_ends_fixed = fixed;
     if (one_fibre) all->fibre = sets[0].fibre;
     if (count) memcpy(all->origin, sets[0].origin, sizeof all->origin);
+    for (uint32_t i = 0; i < count; ++i)
+        all->relative_widths = all->relative_widths || sets[i].relative_widths;
     return RESULT_OK;
 }
 

@@ -28,7 +28,8 @@ U
 
 # A played file: three frames at its rate, with its numbers, which differ; what is exported is what was read.
 "$render" sway.usda "${quick[@]}" -o played/ --export played.usda
-[ "$(ls played | tr '\n' ' ')" = "frame_1001.png frame_1002.png frame_1003.png " ] && good
+files=(played/*)
+[ "${files[*]}" = "played/frame_1001.png played/frame_1002.png played/frame_1003.png" ] && good
 "$TRACTRIX_BIN/tractrix-compare" played/frame_1001.png played/frame_1003.png >/dev/null && exit 1
 good
 grep -q 'timeCodesPerSecond = 24$' played.usda && grep -q 'startTimeCode = 1001' played.usda && good
