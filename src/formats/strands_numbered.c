@@ -7,7 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-bool strands_is_numbered(const char *path)
+// Whether the path is a pattern: it has %d or %04d, and no file has this name.
+static bool is_numbered(const char *path)
 {
     return strchr(path, '%') && access(path, F_OK) != 0;
 }
@@ -81,8 +82,8 @@ static Result read_pattern(Strands *strands, StrandsFrames *frames, const Target
     return read_frames(strands, frames, target, &same, error);
 }
 
-Result strands_read_numbered(Strands *strands, StrandsFrames *frames, const char *path,
-                             const StrandsReadOptions *options, StrandsReport *report, Error *error)
+static Result read_numbered(Strands *strands, StrandsFrames *frames, const char *path,
+                            const StrandsReadOptions *options, StrandsReport *report, Error *error)
 {
     const StrandsReadOptions defaults = {0};
     StrandsReport unwanted;
@@ -97,4 +98,11 @@ Result strands_read_numbered(Strands *strands, StrandsFrames *frames, const char
     }
     target_destroy(&target);
     return result;
+}
+
+Result strands_read_any(Strands *strands, StrandsFrames *frames, const char *path,
+                        const StrandsReadOptions *options, StrandsReport *report, Error *error)
+{
+    return (is_numbered(path) ? read_numbered : strands_read_frames)(strands, frames, path, options,
+                                                                     report, error);
 }

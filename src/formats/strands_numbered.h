@@ -4,12 +4,9 @@
 
 #include "formats/strands_read.h"
 
-// Whether the path is a pattern: it has %d or %04d, and no file has this name.
-bool strands_is_numbered(const char *path);
-
-// Like strands_read_frames for the files of a pattern, which may begin at any number. The unit and
-// the axis of the first file hold for all. `frames`: NULL to read the first file only.
-// RESULT_BAD_INPUT for a gap, or a file with other strands than the first.
-Result strands_read_numbered(Strands *strands, StrandsFrames *frames, const char *path,
-                             const StrandsReadOptions *options, StrandsReport *report,
-                             Error *error);
+// Like strands_read_frames. A path with %d or %04d that is no file stands for numbered files, which
+// may begin at any number; the unit and the axis of the first one hold for all. `frames`: NULL to
+// read the first frame only. RESULT_BAD_INPUT for a gap, or a file with other strands than the
+// first one.
+Result strands_read_any(Strands *strands, StrandsFrames *frames, const char *path,
+                        const StrandsReadOptions *options, StrandsReport *report, Error *error);

@@ -4,7 +4,6 @@
 #include "base/doubles.h"
 #include "formats/foreign.h"
 #include "formats/strands_mend.h"
-#include "formats/strands_numbered.h"
 #include "strands/strands_edit.h"
 
 #include <math.h>
@@ -366,8 +365,6 @@ Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *
     if (frames) *frames = (StrandsFrames){0};
     if (report) *report = (StrandsReport){.kind = FORMAT_KINDS};
     Bytes bytes;
-    if (strands_is_numbered(path))
-        return strands_read_numbered(strands, frames, path, options, report, error);
     TRY(bytes_read_input(&bytes, path, error));
     // A byte order mark hides a text format from detection. Binary files are detected with it,
     // since their first number may have the same bytes.

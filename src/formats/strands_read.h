@@ -59,8 +59,7 @@ Result strands_read(Strands *strands, const char *path, const StrandsReadOptions
                     StrandsReport *report, Error *error);
 
 // Like strands_read, but with all frames. Only the first frame is mended; the others keep its
-// remaining vertices. A path with %d or %04d that is no file stands for numbered files, each a frame
-// (strands_numbered.h). RESULT_BAD_INPUT for a frame with a coordinate that is not finite or beyond
+// remaining vertices. RESULT_BAD_INPUT for a frame with a coordinate that is not finite or beyond
 // 1000 km.
 Result strands_read_frames(Strands *strands, StrandsFrames *frames, const char *path,
                            const StrandsReadOptions *options, StrandsReport *report, Error *error);

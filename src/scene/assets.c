@@ -5,6 +5,7 @@
 #include "base/activity.h"
 #include "formats/mesh_read.h"
 #include "formats/mesh_sequence.h"
+#include "formats/strands_numbered.h"
 #include "formats/strands_read.h"
 #include "scene/root_distance.h"
 #include "strands/paint.h"
@@ -259,8 +260,8 @@ static Result load_section(Assets *assets, Scene *scene, uint32_t i, FILE *messa
     activity_set("reading hair");
     bool plays = may_play(scene, section), all = plays || !section->params.hair_frame.automatic;
     StrandsFrames *frames = &assets->frames[i];
-    Result result = strands_read_frames(&assets->strands[i], all ? frames : NULL, section->file,
-                                        &options, &assets->reports[i], error);
+    Result result = strands_read_any(&assets->strands[i], all ? frames : NULL, section->file,
+                                     &options, &assets->reports[i], error);
     activity_set(NULL);
     if (result == RESULT_OK && options.recenters) recenter(scene, &assets->strands[i], messages);
     THEN(result, take_frame(&assets->strands[i], frames, section, error));
@@ -470,7 +471,7 @@ Result assets_check(const Scene *scene, FILE *stream)
         StrandsReport report;
         Error error;
         options.strict = false; // report all defects, do not refuse the file
-        Result result = strands_read(&strands, section->file, &options, &report, &error);
+        Result result = strands_read_any(&strands, NULL, section->file, &options, &report, &error);
         if (result == RESULT_OK) {
             strands_report_print(&report, section->file, stream);
             if (!strands_report_is_clean(&report)) result = RESULT_FAILED;

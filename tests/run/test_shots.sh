@@ -48,4 +48,9 @@ status=0
 grep -q 'startTimeCode = 7' sim.usda && grep -q '7: \[(0, 0, 0), (0, -0.1, 0)\]' sim.usda && good
 "$convert" sway.usda --frame-number 1 -o shifted.usda >/dev/null
 grep -q 'startTimeCode = 1$' shifted.usda && good
-echo "$passed passed, $((8 - passed)) failed, 0 skipped"
+
+# Numbered files are frames, too.
+"$convert" sway.usda -o "sway_%04d.tfx" >/dev/null
+"$render" "sway_%04d.tfx" "${quick[@]}" -o numbered/
+[ "$(find numbered -name 'frame_100[123].png' | wc -l)" = 3 ] && good
+echo "$passed passed, $((9 - passed)) failed, 0 skipped"
