@@ -189,11 +189,12 @@ static const double MOST_TURN = 45;
 static Result check_turn(const StrandsFit *fit, Error *error)
 {
     if (fit->turned_deg <= MOST_TURN) return RESULT_OK;
-    return error_set(error, RESULT_BAD_INPUT,
-                     "--fit: the best fit turns the hair by %.3g degrees, which is not its place on "
-                     "a head: expected hair and mesh that face the same way (--up, --mesh-up, or "
-                     "--rotate before --fit)",
-                     fit->turned_deg);
+    return error_set(
+        error, RESULT_BAD_INPUT,
+        "--fit: the best fit turns the hair by %.3g degrees, which is not its place on "
+        "a head: expected hair and mesh that face the same way (--up, --mesh-up, or "
+        "--rotate before --fit)",
+        fit->turned_deg);
 }
 
 static void tell_fit(const StrandsFit *fit, FILE *messages)

@@ -67,8 +67,8 @@ static void other_radiance_images_are_refused(void **state)
     (void)state;
     static const uint8_t flat[8] = {0};
     static const char *const heads[] = {"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 2\n",
-                                        HEAD "+Y 1 +X 2\n", HEAD "-Y 0 +X 2\n", HEAD "-Y 99999 +X 99999\n",
-                                        "#?RADIANCE\n"};
+                                        HEAD "+Y 1 +X 2\n", HEAD "-Y 0 +X 2\n",
+                                        HEAD "-Y 99999 +X 99999\n", "#?RADIANCE\n"};
     for (size_t i = 0; i < sizeof heads / sizeof *heads; ++i) {
         Image image;
         assert_int_equal(decode(&image, heads[i], flat, sizeof flat, NULL), RESULT_BAD_INPUT);
