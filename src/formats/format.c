@@ -223,6 +223,7 @@ void format_source_unread(FormatSource *source, const char *name)
 {
     FormatContents *contents = &source->contents;
     size_t used = strlen(contents->unread), length = strlen(name);
+    if (length == 0) return;
     for (const char *at = contents->unread; (at = strstr(at, name)); ++at)
         if ((at == contents->unread || at[-1] == ' ') && (!at[length] || at[length] == ',')) return;
     contents->unread_count++;

@@ -220,7 +220,7 @@ static Result play(Assets *assets, Scene *scene, uint32_t i, FILE *messages, Err
 }
 
 // The run's frames and rate are those of the longest animation that is played.
-static void take_length(const Assets *assets, Scene *scene)
+static void take_length(Scene *scene)
 {
     RunParams *run = &scene->run;
     const StrandsFrames *longest = NULL;
@@ -229,7 +229,6 @@ static void take_length(const Assets *assets, Scene *scene)
         if (frames && (!longest || frames->count > longest->count)) longest = frames;
     }
     if (!longest) return;
-    (void)assets;
     if (scene_has_default(scene, "fps") && longest->fps >= 0.001 && longest->fps <= 10000)
         run->fps = longest->fps;
     double frames = (longest->count - 1) * run->fps / (longest->fps * (double)run->speed);
@@ -418,7 +417,7 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
         TRY(load_section(assets, scene, i, messages, verbose, error));
         take_fibre(&scene->sections[i], &assets->strands[i], messages);
     }
-    take_length(assets, scene);
+    take_length(scene);
     for (uint32_t b = 0; b < scene->body_count; ++b) {
         const BodyLoad load = {.assets = assets,
                                .run = &scene->run,
