@@ -329,6 +329,16 @@ static int find_prim(UsdStage *stage, uint64_t path, int originals)
     return -1;
 }
 
+// Gives a prim the arcs of another one.
+static void copy_arcs(UsdStage *stage, int of, int prim, const char *path, const UsdArc *from,
+                      uint32_t arcs)
+{
+    for (uint32_t i = 0; i < arcs && reader_work(stage->reader, 1, 5); ++i)
+        if (stage->arc[i].prim == of)
+            add_arc(stage, prim, stage->arc[i].source, stage->arc[i].word, stage->arc[i].line,
+                    from->depth + 1, path);
+}
+
 // A copy of a prim and of the arcs that it has. `path`: its own.
 static int copy_prim(UsdStage *stage, int of, int parent, const char *path, const UsdArc *from,
                      uint32_t arcs)
@@ -340,10 +350,7 @@ static int copy_prim(UsdStage *stage, int of, int parent, const char *path, cons
     stage->prim[prim].world = NULL;
     stage->prim[prim].copy = true;
     stage->prim[prim].timed = false;
-    for (uint32_t i = 0; i < arcs && reader_work(stage->reader, 1, 5); ++i)
-        if (stage->arc[i].prim == of)
-            add_arc(stage, prim, stage->arc[i].source, stage->arc[i].word, stage->arc[i].line,
-                    from->depth + 1, path);
+    copy_arcs(stage, of, prim, path, from, arcs);
     return prim;
 }
 
@@ -403,6 +410,7 @@ static void follow_arcs(UsdStage *stage, int originals)
             return;
         }
         inherit(&stage->prim[arc.prim], &stage->prim[of]);
+        copy_arcs(stage, of, arc.prim, arc.path, &arc, arcs);
         stage->schema->repeat(stage->to, of, arc.prim, arc.path);
         repeat_below(stage, of, arc.prim, arc.path, &arc, arcs, originals);
     }
