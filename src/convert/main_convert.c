@@ -379,7 +379,7 @@ static Result read_mesh(Job *job, Error *error)
         .otherwise_unit = first ? (double)first->unit_used : 1,
         .up_z = job->command.mesh_up ? job->command.mesh_up == UP_Z : -1,
         .otherwise_up_z = first && first->up_z,
-        .rest = "",
+        .rest = NULL,
         .otherwise_rate = 1,
         .origin = {job->input.origin[0], job->input.origin[1], job->input.origin[2]},
     };

@@ -216,14 +216,13 @@ static void convert(MeshSamples *samples, float unit, bool up_z, const double or
 // Makes the mesh from the first sample's positions and the faces of the file or, if it has none, of
 // the rest pose.
 static Result make_mesh(Mesh *mesh, MeshSamples *samples, const Mesh *rest, const char *path,
-                        Error *error)
+                        bool takes_rest, Error *error)
 {
     bool own = samples->triangle != NULL;
     if (!own && !rest->vertex_count)
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%s: no faces: " FOREIGN_WANTS_MESH
-                         ", or --mesh-rest with an OBJ or PLY file that has them",
-                         path);
+        return error_set(error, RESULT_BAD_INPUT, "%s: no faces: " FOREIGN_WANTS_MESH "%s", path,
+                         takes_rest ? ", or --mesh-rest with an OBJ or PLY file that has them"
+                                    : "");
     uint64_t triangles = own ? samples->triangle_count : rest->triangle_count;
     if (triangles == 0 || triangles > UINT32_MAX / 8)
         return error_set(error, RESULT_BAD_INPUT,
@@ -254,7 +253,7 @@ static Result take_samples(MeshSequence *sequence, Mesh *mesh, MeshSamples *samp
                                     : options->otherwise_up_z;
     convert(samples, (float)unit, up_z == 1, options->origin);
     TRY(check_finite(samples, path, error));
-    TRY(make_mesh(mesh, samples, rest, path, error));
+    TRY(make_mesh(mesh, samples, rest, path, options->rest != NULL, error));
     sequence->times.count = (uint32_t)samples->count;
     sequence->times.rate = samples->rate;
     sequence->first = samples->first;
@@ -294,7 +293,7 @@ static Result read_file(MeshSequence *sequence, Mesh *mesh, const Mesh *rest, co
 
 static Result read_rest(Mesh *rest, const MeshSequenceOptions *options, Error *error)
 {
-    if (!*options->rest) return RESULT_OK;
+    if (!options->rest || !*options->rest) return RESULT_OK;
     float unit = (float)(options->unit > 0 ? options->unit : options->otherwise_unit);
     bool up_z = (options->up_z >= 0 ? options->up_z : options->otherwise_up_z) == 1;
     TRY(mesh_read(rest, options->rest, unit, up_z, error));

@@ -24,7 +24,7 @@ typedef struct MeshSequenceOptions {
                                  // value
     const char *objects;         // which objects of a USD or Alembic file; NULL or "": all
                                  // (format_wants_object)
-    const char *rest;            // OBJ file of the rest pose; "" if none
+    const char *rest; // OBJ file of the rest pose; "" if none; NULL if the program takes none
     double rate, otherwise_rate; // samples per second; 0: as the file says, otherwise the second
                                  // value
     double start;                // s

@@ -311,7 +311,7 @@ static Result read_mesh(Mesh *mesh, const FurOptions *options, Error *error)
     const MeshSequenceOptions wishes = {.unit = options->unit,
                                         .otherwise_unit = 1,
                                         .up_z = options->up_z ? 1 : -1,
-                                        .rest = "",
+                                        .rest = NULL,
                                         .otherwise_rate = 1};
     Result result = mesh_sequence_read(&sequence, mesh, &rest, options->mesh, &wishes, error);
     if (result == RESULT_OK && *sequence.note)
