@@ -50,7 +50,20 @@ grep -q 'startTimeCode = 7' sim.usda && grep -q '7: \[(0, 0, 0), (0, -0.1, 0)\]'
 grep -q 'startTimeCode = 1$' shifted.usda && good
 
 # Numbered files are frames, too.
-"$convert" sway.usda -o "sway_%04d.tfx" >/dev/null
+"$convert" sway.usda -o "sway_%04d.tfx" >/dev/null 2>&1
 "$render" "sway_%04d.tfx" "${quick[@]}" -o numbered/
 [ "$(find numbered -name 'frame_100[123].png' | wc -l)" = 3 ] && good
-echo "$passed passed, $((9 - passed)) failed, 0 skipped"
+
+# An encoder that ends early with success, though the frames fit into the pipe, is a failure.
+mkdir fake
+cat >fake/ffmpeg <<'F'
+#!/bin/sh
+head -c 100 >/dev/null
+for last; do :; done
+echo video >"${last#file:}"
+F
+chmod +x fake/ffmpeg
+status=0
+PATH=$PWD/fake:$PATH "$render" sway.usda "${quick[@]}" -o early.mp4 2>message || status=$?
+[ $status = 1 ] && grep -q 'stopped reading' message && [ ! -e early.mp4 ] && good
+echo "$passed passed, $((10 - passed)) failed, 0 skipped"
