@@ -21,6 +21,12 @@ class Parameters(TypedDict, total=False):
     group: Union[int, Literal["auto"]]
     """read only the strands of this group: Alembic's groom_group_id, a section of a .usda; auto: all strands [0 to
     16777215; default auto]"""
+    object: str
+    """read only these objects of the USD or Alembic file: names in their paths, separated by commas, with * and ?;
+    !NAME leaves out; empty: all [default none]"""
+    hair_frame: Union[int, Literal["auto"]]
+    """number of the frame of an animated hair file at which a simulation starts, and the pose to which its hair
+    returns; auto: the first [-100000000 to 100000000; default auto]"""
     array: str
     """name of the array of positions in the .npz file; empty: 'positions', 'points' or the first array of a suitable
     shape [default none]"""
@@ -29,6 +35,8 @@ class Parameters(TypedDict, total=False):
     mesh_rest: Path
     """OBJ or PLY file of a deforming mesh in the pose in which its hair was groomed; it also gives the faces if --mesh
     has none; empty: the pose at time 0 [default none]"""
+    mesh_object: str
+    """read only these objects of a mesh in a USD or Alembic file; as --object [default none]"""
     mesh_fps: Union[float, Literal["auto"]]
     """samples of a deforming mesh per second; auto: as its file says, otherwise --fps [0.001 to 100000 1/s; default
     auto]"""
@@ -128,7 +136,7 @@ class Parameters(TypedDict, total=False):
     """maximum displacement per frame that becomes velocity [0.001 to 1000000 cm; default 20; of tressfx]"""
     followers: Union[int, Literal["auto"]]
     """followers per guide strand; auto: as the file says (-1), otherwise enough to fill a sparse groom; 0 if --radius
-    is given [-1 to 1000; default auto]"""
+    is given or the file has widths [-1 to 1000; default auto]"""
     follow: Literal["offset", "interpolate", "auto"]
     """placement of followers: at an offset from their guide, or interpolated between the three guides around their
     root; auto: interpolate if --followers auto fills a sparse groom, otherwise offset [default auto]"""
@@ -150,8 +158,8 @@ class Parameters(TypedDict, total=False):
     clamped: int
     """vertices per strand that move with the head: 1: the root; 2: also the next vertex, which fixes the direction at
     the root (tressfx always 2; strands of two vertices keep a free tip) [1 to 2; default 1]"""
-    fps: float
-    """frames per second of the video [1 to 10000 1/s; default 60]"""
+    fps: Union[float, str]
+    """frames per second, or 24000/1001 [0.001 to 10000 1/s; default 60]"""
     speed: float
     """seconds of the scene per second of video: 0.25 is slow motion; 0: hair stays as after --preroll, and only the
     turntable moves [0 to 10000; default 1]"""
@@ -248,14 +256,17 @@ class Parameters(TypedDict, total=False):
     file_opacity: bool
     """use the opacities of the hair file; ignored if --opacity or --no-file-colors is given [default true]"""
     file_thickness: bool
-    """use the thickness of the hair file, relative to its mean, as a factor of --radius [default true]"""
+    """use the thickness of the hair file: widths of vertices in metres as they are, unless --radius is given; otherwise
+    relative to its mean, as a factor of --radius [default true]"""
     tip_color: Union[Numbers, str]
     """color of the tips, sRGB [0 to 1; default #c8a070]"""
     tip_length: float
     """share of the strand, from the tip, over which the color changes to --tip-color; 0: none [0 to 1; default 0]"""
     radius: Union[float, Literal["auto"]]
-    """fibre radius at the root; auto: on average 3 fibres cover each point of the hair; hair other than fur gets at
-    most 1/400 of the longest strand [1e-07 to 1 m; default auto]"""
+    """fibre radius at the root; auto: the file's, if it has widths; otherwise on average 3 fibres cover each point of
+    the hair; hair other than fur gets at most 1/400 of the longest strand [1e-07 to 1 m; default auto]"""
+    width_scale: float
+    """factor of the fibres' width, whether it comes from --radius or the hair file [0.001 to 1000; default 1]"""
     tip_ratio: float
     """radius at the tip divided by the radius at the root [0 to 1; default 0.3]"""
     opacity: float

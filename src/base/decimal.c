@@ -96,3 +96,11 @@ void decimal_format(float value, char *text, size_t size)
         if (strtof(text, NULL) == value) return;
     }
 }
+
+void decimal_format_double(double value, char *text, size_t size)
+{
+    for (int digits = 6; digits <= 17; ++digits) {
+        snprintf(text, size, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) return;
+    }
+}

@@ -12,3 +12,6 @@ void decimal_put(FILE *stream, const char *before, float value);
 // Writes the shortest decimal number that reads back as `value` (finite), cut at `size`; 16
 // suffice.
 void decimal_format(float value, char *text, size_t size);
+
+// The same for a double; 32 suffice.
+void decimal_format_double(double value, char *text, size_t size);

@@ -27,6 +27,7 @@ enum { MOST_WORDS = 16, NAME_SIZE = 80 };
 #define VALUE_PROFILE(CHOICES)    "X[:X...]"
 #define VALUE_TURN(CHOICES)       "[X]"
 #define VALUE_AUTO_INT(CHOICES)   "N|auto"
+#define VALUE_RATE(CHOICES)       "X|A/B"
 #define VALUE_AUTO_FLOAT(CHOICES) "X|auto"
 #define VALUE_AUTO_VEC3(CHOICES)  "X,Y,Z|auto"
 #define VALUE_AUTO_COLOR(CHOICES) "COLOR|auto"

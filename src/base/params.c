@@ -3,6 +3,7 @@
 
 #include "base/colors.h"
 #include "base/decimal.h"
+#include "base/rate.h"
 #include "base/suggest.h"
 #include "glsl/common/collider_table.h"
 
@@ -195,6 +196,7 @@ static const struct Form {
     [PARAM_UINT] = {"a whole number ", "", NUMBER_UINT, 1, 0, false},
     [PARAM_FLOAT] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_PROFILE] = {"a number ", ", or two such numbers, ROOT:TIP", NUMBER_FLOAT, 1, 0, false},
+    [PARAM_RATE] = {"a number ", ", or a fraction, 24000/1001", NO_NUMBER, 0, 0, false},
     [PARAM_TURN] = {"a number ", "", NUMBER_FLOAT, 1, 0, false},
     [PARAM_VEC3] = {"three numbers x,y,z ", "", NUMBER_FLOAT, 3, ',', false},
     [PARAM_COLOR] = {"a name (--help colors), #rrggbb or r,g,b ", "", NUMBER_FLOAT, 3, ',', false},
@@ -358,6 +360,18 @@ static Result parse_choice(const Input *input, int *value)
     return refuse(input, NULL);
 }
 
+static Result parse_rate(const Input *input, double *rate)
+{
+    double number;
+    if (!rate_parse(input->text, &number)) return refuse(input, NULL);
+    double inside = fmin(fmax(number, input->info->minimum), input->info->maximum);
+    char nearest[32];
+    snprintf(nearest, sizeof nearest, "%.10g", inside);
+    if (number != inside) return refuse(input, nearest);
+    *rate = number;
+    return RESULT_OK;
+}
+
 static Result parse_profile(const Input *input, ProfileNumber *number)
 {
     const ParamInfo *info = input->info;
@@ -416,6 +430,8 @@ Result params_parse(const ParamInfo *info, void *params, const char *text, Error
     }
     case PARAM_PROFILE:
         return parse_profile(&input, field);
+    case PARAM_RATE:
+        return parse_rate(&input, field);
     case PARAM_TURN:
         if (!*text) input.text = "360";
         return parse_numbers(&input, field);
@@ -474,6 +490,9 @@ char *params_format(const ParamInfo *info, const void *params)
             if (((const AutoFloat *)field)->value == LENGTH_UNITS[i].metres)
                 return strdup(LENGTH_UNITS[i].word);
         return format_numbers(form, field);
+    case PARAM_RATE:
+        rate_format(*(const double *)field, profile, sizeof profile);
+        return strdup(profile);
     case PARAM_PROFILE:
         profile_format(field, profile, sizeof profile);
         return strdup(profile);

@@ -33,6 +33,7 @@ typedef enum ParamKind {
     PARAM_UINT,       // uint32_t: decimal
     PARAM_FLOAT,      // float: decimal, with or without exponent
     PARAM_PROFILE,    // ProfileNumber: decimal, or A:B, A:B@0.3:C along the strand (profile.h)
+    PARAM_RATE,       // double, per second: decimal or fraction, A/B (rate.h)
     PARAM_TURN,       // float: decimal; "" (an option without a number) is 360
     PARAM_VEC3,       // float[3]: x,y,z
     PARAM_COLOR,      // float[3], sRGB 0..1: #rrggbb, r,g,b or a name (colors.h)
@@ -136,6 +137,7 @@ typedef enum ParamGroup { PARAM_GROUPS(GROUP_VALUE) GROUP_COUNT } ParamGroup;
 #define PARAM_FIELD_PROFILE(field)                                                                 \
     float field;                                                                                   \
     Profile field##_along;
+#define PARAM_FIELD_RATE(field)       double field;
 #define PARAM_FIELD_TURN(field)       float field;
 #define PARAM_FIELD_VEC3(field)       float field[3];
 #define PARAM_FIELD_COLOR(field)      float field[3];

@@ -181,7 +181,8 @@ char *target_name_frame(const Target *target, int frame)
 {
     if (target->kind != TARGET_FRAMES) return strdup(target->before);
     char *name = NULL;
-    int length = asprintf(&name, "%s%0*d%s", target->before, target->digits, frame, target->after);
+    int length = asprintf(&name, "%s%0*d%s", target->before, target->digits, frame + target->offset,
+                          target->after);
     return length < 0 ? NULL : name;
 }
 
@@ -202,7 +203,7 @@ bool target_read_number(const Target *target, const char *name, int *frame)
     errno = 0;
     long number = strtol(name + length, &end, 10);
     if (errno || number > 999999999) return false;
-    *frame = (int)number;
+    *frame = (int)number - target->offset;
     // Reject names with another number of digits: the number's name must be exactly this one.
     char *path = target_name_frame(target, *frame);
     bool own = path && strcmp(path + (before - target->before), name) == 0;

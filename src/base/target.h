@@ -29,6 +29,7 @@ typedef struct Target {
     char *before; // the name before the frame number; the full name of a still or a video
     char *after;  // the name after the number, with the suffix
     bool floats;  // the files are PFM or EXR
+    int offset;   // number of frame 0
     int digits;   // minimum number of digits, padded with zeros
 } Target;
 

@@ -3,8 +3,8 @@
 #include "base/interrupt.h"
 #include "bench/bench_commands.h"
 #include "bench/experiments.h"
+#include "formats/strands_read.h"
 #include "gen/strands_make.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <stdlib.h>

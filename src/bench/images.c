@@ -3,12 +3,12 @@
 #include "base/interrupt.h"
 #include "bench/bench_commands.h"
 #include "draw/renderer.h"
+#include "formats/strands_read.h"
 #include "gen/strands_make.h"
 #include "reference/shadow_reference.h"
 #include "scene/outline.h"
 #include "scene/scene.h"
 #include "strands/paint.h"
-#include "strands/strands_read.h"
 #include "strands/strands_resample.h"
 
 #include <math.h>

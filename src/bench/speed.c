@@ -8,10 +8,10 @@
 #include "bench/trial.h"
 #include "bench/waited.h"
 #include "draw/renderer.h"
+#include "formats/strands_read.h"
 #include "gen/strands_make.h"
 #include "sim/simulation.h"
 #include "strands/paint.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <stdlib.h>

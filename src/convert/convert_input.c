@@ -29,6 +29,7 @@ static Result read_fps(CacheStrands *strands, Error *error)
         return error_set(error, RESULT_FAILED, "%s: no memory for its scene",
                          strands->cache.file.path);
     strands->fps = json_number_value(json_object_get(scene, "fps"));
+    strands->number = (int)json_integer_value(json_object_get(scene, "frame_number"));
     json_decref(scene);
     return strands->fps > 0 ? RESULT_OK : refuse_cache(strands, "its scene has no fps", error);
 }
@@ -192,7 +193,7 @@ static bool frame_is_there(const ConvertInput *input, int frame)
 static int find_last(const ConvertInput *input)
 {
     int last = input->first;
-    if (input->cached) return (int)input->cache.cache.frame_count - 1;
+    if (input->cached) return input->cache.number + (int)input->cache.cache.frame_count - 1;
     if (input->framed) return input->frames.first + (int)input->frames.count - 1;
     while (frame_is_there(input, last)) ++last;
     return last - 1;
@@ -241,14 +242,15 @@ static Result choose_frames(ConvertInput *input, Error *error)
     }
     double own = input->cached ? input->cache.fps : input->frames.fps;
     if (input->fps <= 0) input->fps = own > 0 ? own : USUAL_FPS;
-    if (input->framed && input->first == 0) input->first = input->frames.first;
+    int own_first = input->framed ? input->frames.first : input->cached ? input->cache.number : 0;
+    if (input->first == 0) input->first = own_first;
     if (input->last < 0) input->last = find_last(input);
     if (whole) TRY(check_whole(input, error));
     if (input->framed) return check_framed(input, error);
-    if (input->last >= input->first)
-        return input->cached ? cache_file_check(&input->cache.cache, input->last, error)
-                             : RESULT_OK;
-    if (input->cached) return cache_file_check(&input->cache.cache, input->first, error);
+    int last = input->last >= input->first ? input->last : input->first;
+    if (input->cached)
+        return cache_file_check(&input->cache.cache, last - input->cache.number, error);
+    if (input->last >= input->first) return RESULT_OK;
     return error_set(error, RESULT_BAD_INPUT, "%s: no file for frame %d", input->paths[0],
                      input->first);
 }
@@ -272,7 +274,14 @@ static Result read_file(ConvertInput *input, const char *path, int file, Strands
                         StrandsFrames *frames, Error *error)
 {
     StrandsReport report;
-    TRY(strands_read_frames(strands, frames, path, &input->options, &report, error));
+    StrandsReadOptions options = input->options;
+    if (options.recenters && input->centred) {
+        options.recenters = false;
+        options.origin = input->origin;
+    }
+    TRY(strands_read_frames(strands, frames, path, &options, &report, error));
+    if (!input->centred) memcpy(input->origin, strands->origin, sizeof input->origin);
+    input->centred = true;
     report_mended(input, &report, file, path);
     input->features |= strands_features(strands);
     if (input->reports[file].strands == 0) input->reports[file] = report;
@@ -373,7 +382,8 @@ static Result read_files(ConvertInput *input, Strands *strands, Error *error)
 Result convert_input_read(ConvertInput *input, int frame, Strands *strands, Error *error)
 {
     *strands = (Strands){0};
-    if (input->cached) return read_cache(&input->cache, frame, strands, error);
+    if (input->cached)
+        return read_cache(&input->cache, frame - input->cache.number, strands, error);
     if (input->numbered) return read_numbered(input, frame, strands, error);
     if (input->framed) return read_framed(input, frame, strands, error);
     return read_files(input, strands, error);
@@ -405,8 +415,8 @@ void convert_input_print(const ConvertInput *input, FILE *stream)
 
 static json_t *defects_to_json(const StrandsReport *report, const char *path)
 {
-    static const char *const names[DEFECT_KINDS] = {"not_finite", "too_short",  "coincident",
-                                                    "attribute",  "over_limit", "unread"};
+    static const char *const names[DEFECT_KINDS] = {
+        "not_finite", "too_short", "coincident", "attribute", "over_limit", "padding", "unread"};
     json_t *list = json_array();
     for (int kind = 0; kind < DEFECT_KINDS; ++kind) {
         const Defect *defect = &report->defects[kind];
@@ -420,16 +430,31 @@ static json_t *defects_to_json(const StrandsReport *report, const char *path)
     return list;
 }
 
+static json_t *contents_to_json(const FormatContents *contents)
+{
+    json_t *list = json_array();
+    for (uint32_t i = 0; i < contents->count && i < FORMAT_OBJECTS; ++i) {
+        const FormatObject *object = &contents->object[i];
+        json_t *entry = json_pack("{ss si}", "path", object->path, "strands", object->strands);
+        if (object->why) json_object_set_new(entry, "left_out", json_string(object->why));
+        json_array_append_new(list, entry);
+    }
+    return list;
+}
+
 static json_t *report_to_json(const StrandsReport *report, const char *path)
 {
     return json_pack(
-        "{ss ss sf si si si si sf sb ss sb sb si si so}", "file", path, "kind",
+        "{ss ss sf si si si si sf sb ss sb sb si si ss si si si so ss so}", "file", path, "kind",
         FORMAT_TABLE[report->kind]->name, "version", (double)report->version, "declared_strands",
         report->declared_strands, "declared_vertices", report->declared_vertices, "strands",
         report->strands, "vertices", report->vertices, "unit_m", (double)report->unit_used,
         "unit_guessed", report->unit_guessed, "up", report->up_z ? "z" : "y", "up_guessed",
         report->up_guessed, "shuffled", report->shuffled, "empty_roots", report->empty_roots,
-        "shared_roots", report->shared_roots, "defects", defects_to_json(report, path));
+        "shared_roots", report->shared_roots, "note", report->note, "flaws", report->flaws,
+        "object_count", report->contents.count, "objects_left_out", report->contents.left_out,
+        "objects", contents_to_json(&report->contents), "attributes_not_read",
+        report->contents.unread, "defects", defects_to_json(report, path));
 }
 
 json_t *convert_input_to_json(const ConvertInput *input)

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "base/target.h"
+#include "formats/strands_read.h"
 #include "run/cache.h"
-#include "strands/strands_read.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -21,6 +21,7 @@ typedef struct CacheStrands {
     uint32_t *section; // [strand_count]: the section of each strand
     uint32_t section_count;
     double fps;            // frames per second
+    int number;            // of the first frame
     float (*positions)[3]; // of a frame, in the cache's order
 } CacheStrands;
 
@@ -32,6 +33,8 @@ typedef struct ConvertInput {
     bool says_guess;   // messages include guesses of unit and axis
     bool wants_frames; // read all frames of a single file with time, otherwise only the first
     bool cached, numbered, framed; // if none of these, the files are one frame
+    bool centred;                  // the first file has set `origin`
+    double origin[3];              // m, y up: of all files (Strands.origin)
     Strands still;        // of a single file: until it is handed on, or, if framed, to the end
     StrandsFrames frames; // framed
     CacheStrands cache;

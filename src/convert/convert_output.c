@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/convert_output.h"
 
-#include "strands/formats/format.h"
+#include "formats/format.h"
 #include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
@@ -165,9 +165,11 @@ Result convert_output_add(ConvertOutput *output, int frame, Strands *strands, Er
 {
     if (strands->strand_count == 0)
         return error_set(error, RESULT_FAILED, "%s: no strands to write", output->path);
-    strands_to_unit(strands, output->unit, output->up_z);
     output->kind =
         output->format ? (FormatKind)output->format - 1 : format_choose(output->path, strands);
+    // Only scene files have transforms, which hold an origin exactly.
+    if (!frames_file_has_look(output->kind)) strands_give_back_origin(strands);
+    strands_to_unit(strands, output->unit, output->up_z);
     output->lost |= strands_features(strands) & ~FORMAT_TABLE[output->kind]->features;
     if (output->target.kind == TARGET_VIDEO) return add_frame(output, frame, strands, error);
     return write_file(output, frame, strands, error);

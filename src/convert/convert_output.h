@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/target.h"
-#include "strands/formats/frames_file.h"
-#include "strands/strands_report.h"
+#include "formats/frames_file.h"
+#include "formats/strands_report.h"
 
 typedef struct ConvertOutput {
     const char *path;

@@ -182,6 +182,21 @@ bool convert_steps_fit(const ConvertSteps *steps)
     return false;
 }
 
+// How far a fit may turn hair, degrees. No start is turned, and a fit that ends farther has found
+// another part of the mesh, such as the face.
+static const double MOST_TURN = 45;
+
+static Result check_turn(const StrandsFit *fit, Error *error)
+{
+    if (fit->turned_deg <= MOST_TURN) return RESULT_OK;
+    return error_set(
+        error, RESULT_BAD_INPUT,
+        "--fit: the best fit turns the hair by %.3g degrees, which is not its place on "
+        "a head: expected hair and mesh that face the same way (--up, --mesh-up, or "
+        "--rotate before --fit)",
+        fit->turned_deg);
+}
+
 static void tell_fit(const StrandsFit *fit, FILE *messages)
 {
     fprintf(messages,
@@ -200,6 +215,7 @@ static Result fit(ConvertSteps *steps, Strands *strands, Error *error)
     if (!steps->has_fit) {
         Result result = strands_find_fit(&steps->fit, strands, steps->surface, error);
         if (result != RESULT_OK) return error_prefix(error, result, "--fit: ");
+        TRY(check_turn(&steps->fit, error));
         if (steps->messages) tell_fit(&steps->fit, steps->messages);
         steps->has_fit = true;
     }

@@ -180,6 +180,10 @@ Result figures_measure(Figures *figures, const Strands *strands, const Surface *
     fibre_fill(&figures->fibre, &strands->fibre);
     figures->gravito_bending_length = fibre_gravito_bending_length(&figures->fibre, gravity);
     strands_bounds(strands, figures->low, figures->high);
+    for (int axis = 0; axis < 3; ++axis) {
+        figures->low[axis] = (float)(figures->low[axis] + strands->origin[axis]);
+        figures->high[axis] = (float)(figures->high[axis] + strands->origin[axis]);
+    }
     double *values = malloc(((size_t)strands->vertex_count + 1) * sizeof *values);
     Result result = values ? RESULT_OK
                            : error_set(error, RESULT_FAILED, "no memory to measure %u strands",

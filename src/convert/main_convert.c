@@ -9,14 +9,15 @@
 #include "base/program.h"
 #include "base/progress.h"
 #include "base/quote.h"
+#include "base/rate.h"
 #include "convert/convert_input.h"
 #include "convert/convert_output.h"
 #include "convert/convert_steps.h"
 #include "convert/figures.h"
-#include "mesh/mesh_read.h"
-#include "mesh/mesh_sequence.h"
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/strands_read.h"
 #include "strands/strands.h"
-#include "strands/strands_read.h"
 
 #include <errno.h>
 #include <math.h>
@@ -25,9 +26,11 @@
 #include <unistd.h>
 
 typedef struct Command {
-    const char *unit, *to_unit, *output, *json, *array, *mesh, *mesh_unit; // NULL: not given
-    int points, up, to_up, mesh_up, format, first, last, every, seed;
-    double fps, width;
+    const char *unit, *to_unit, *output, *json, *array, *object, *mesh,
+        *mesh_unit; // NULL: not given
+    int points, up, to_up, mesh_up, format, first, last, every, seed, frame_number;
+    const char *fps;
+    double width;
     bool strict, stats, quiet, partial;
     OptionSteps steps;
 } Command;
@@ -57,6 +60,9 @@ static const Option OPTIONS[] = {
     {"points-per-strand", 0, OPTION_WHOLE, AT(points), "N", 2, 65535,
      "points per strand of .ply and .npy point lists; vertices per cubic curve of USD and Alembic "
      "files [default: from the gaps between strands; 1 to 4 per curve segment]"},
+    {"object", 0, OPTION_STRING, AT(object), "NAME", 0, 0,
+     "read only these objects of a USD or Alembic file: names in their paths, separated by commas, "
+     "with * and ?; !NAME leaves out [default: all]"},
     {"array", 0, OPTION_STRING, AT(array), "NAME", 0, 0,
      "name of the array of positions in a .npz file [default: positions, points, or the first "
      "array of a suitable shape]"},
@@ -71,12 +77,15 @@ static const Option OPTIONS[] = {
     {"first", 0, OPTION_WHOLE, AT(first), "N", 0, 9999999, "first frame to write [default 0]"},
     {"last", 0, OPTION_WHOLE, AT(last), "N", 0, 9999999,
      "last frame to write [default: the last frame of the input]"},
+    {"frame-number", 0, OPTION_WHOLE, AT(frame_number), "N", 0, 9999999,
+     "number of the first frame in the output [default: that of the input]"},
     {"partial", 0, OPTION_SWITCH, AT(partial), NULL, 0, 0,
      "if a cache is cut off or a numbered file is missing, use the frames before that; without "
      "this option it is an error"},
     {"every", 0, OPTION_WHOLE, AT(every), "N", 1, 9999999, "write every Nth frame [default 1]"},
-    {"fps", 0, OPTION_REAL, AT(fps), "X", 1, 10000,
-     "frames per second of .usda, .abc and .npz [default: the cache's; 60 for numbered files]"},
+    {"fps", 0, OPTION_STRING, AT(fps), "X|A/B", 0, 0,
+     "frames per second, such as 25, 23.976 or 24000/1001, of .usda, .abc and .npz [default: the "
+     "cache's; 60 for numbered files]"},
 
     {"mesh", 0, OPTION_STRING, AT(mesh), "FILE", 0, 0,
      "head or body for --fit, --attach and --push-out, and for --stats, which then prints how deep "
@@ -173,6 +182,7 @@ typedef struct Job {
     ConvertInput input;
     ConvertOutput output;
     Figures figures;
+    int shift;       // of frame numbers, from the input to the output
     float mesh_unit; // m; 0: not given
     Mesh mesh;
     Surface surface; // of the mesh; without it all zero
@@ -276,12 +286,18 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
     OptionsProgram program = PROGRAM;
     program.notes = notes;
     describe_formats(formats, sizeof formats);
-    *command = (Command){.last = -1, .every = 1, .seed = 1};
+    *command = (Command){.last = -1, .frame_number = -1, .every = 1, .seed = 1};
     TRY(options_parse(&program, command, argc, argv, &first, done, error));
     if (*done) return RESULT_OK;
     TRY(check_sense(command, argc - first, error));
     TRY(check_last(command, argv + first, argc - first, error));
     TRY(check_paths(command, argv + first, argc - first, error));
+    double fps = 0;
+    if (command->fps && !(rate_parse(command->fps, &fps) && fps >= 0.001 && fps <= 10000))
+        return error_set(error, RESULT_USAGE,
+                         "--fps: got '%.200s', expected a number from 0.001 to 10000, or a "
+                         "fraction, 24000/1001",
+                         command->fps);
     TRY(parse_unit("unit", command->unit, &unit, error));
     TRY(parse_unit("to-unit", command->to_unit, &to_unit, error));
     if (to_unit == 0)
@@ -296,8 +312,10 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
                                             .up = (UpAxis)command->up,
                                             .strict = command->strict,
                                             .seed = (uint32_t)command->seed,
+                                            .recenters = true,
                                             .points_per_strand = (uint32_t)command->points,
-                                            .array = command->array},
+                                            .array = command->array,
+                                            .objects = command->object},
                                 .messages = command->quiet ? NULL : stderr,
                                 .says_guess = command->output,
                                 .wants_frames = wants_frames(command),
@@ -305,7 +323,7 @@ static Result parse(Job *job, int argc, char **argv, bool *done, Error *error)
                                 .last = command->last,
                                 .whole = command->output && !command->partial,
                                 .every = command->every,
-                                .fps = command->fps};
+                                .fps = fps};
     job->output = (ConvertOutput){.path = command->output,
                                   .format = command->format,
                                   .unit = (double)to_unit,
@@ -341,6 +359,7 @@ static Result read_rigid_mesh(Job *job, const MeshSequenceOptions *options, Erro
     double unit = guesses ? 1 : options->unit > 0 ? options->unit : options->otherwise_unit;
     Result result = mesh_read(&job->mesh, path, (float)unit, up_z, error);
     if (result == RESULT_OK && guesses) unit = guess_unit(&job->mesh);
+    if (result == RESULT_OK) mesh_take_away(&job->mesh, options->origin);
     // If hair and mesh are in metres, nothing was assumed that a reader would not expect.
     if (result == RESULT_OK && guesses && !job->command.quiet &&
         (unit != 1 || options->otherwise_unit != 1))
@@ -360,8 +379,9 @@ static Result read_mesh(Job *job, Error *error)
         .otherwise_unit = first ? (double)first->unit_used : 1,
         .up_z = job->command.mesh_up ? job->command.mesh_up == UP_Z : -1,
         .otherwise_up_z = first && first->up_z,
-        .rest = "",
+        .rest = NULL,
         .otherwise_rate = 1,
+        .origin = {job->input.origin[0], job->input.origin[1], job->input.origin[2]},
     };
     if (!path) return RESULT_OK;
     MeshSequence sequence = {0};
@@ -385,8 +405,10 @@ static Result open_files(Job *job, Error *error)
     if (!output->path) return RESULT_OK;
     int count = convert_input_count(input);
     output->animated = convert_input_moves(input);
-    output->first = input->first;
-    output->last = input->first + (count - 1) * input->every;
+    int number = job->command.frame_number;
+    job->shift = number < 0 ? 0 : number - input->first;
+    output->first = input->first + job->shift;
+    output->last = output->first + (count - 1) * input->every;
     output->fps = input->fps;
     return convert_output_open(output, count, error);
 }
@@ -406,7 +428,8 @@ static Result do_frame(Job *job, int frame, Error *error)
     if (first && (command->stats || command->json))
         THEN(result, figures_measure(&job->figures, &strands, job->steps.surface, error));
     activity_set("writing");
-    if (command->output) THEN(result, convert_output_add(&job->output, frame, &strands, error));
+    if (command->output)
+        THEN(result, convert_output_add(&job->output, frame + job->shift, &strands, error));
     // A group for each joined file was made here, not read from a file. So an output format without
     // groups loses nothing of the input.
     if (!(job->input.features & STRANDS_HAS_GROUP))
@@ -490,6 +513,8 @@ static Result run(Job *job, Error *error)
     if (!command->quiet && only_reports) convert_input_print(&job->input, stdout);
     if (!command->quiet && command->output) print_output(job);
     if (command->stats) figures_print(&job->figures, messages_of(command));
+    for (int i = 0; command->stats && i < job->input.path_count && !job->input.cached; ++i)
+        strands_report_print_contents(&job->input.reports[i], messages_of(command));
     if (!command->json) return RESULT_OK;
     return write_json(command->json, &job->input, &job->figures,
                       command->output ? &job->output : NULL, error);

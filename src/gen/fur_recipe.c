@@ -63,7 +63,7 @@ static const Option OPTIONS[] = {
     GEN_OPTION_OUTPUT(AT_COMMAND(output.path)),
     GEN_OPTION_FORMAT(AT_COMMAND(output.format)),
     {"unit", 0, OPTION_REAL, AT_COMMAND(unit), "M", 1e-6, 1e6,
-     "metres per unit of the mesh [default 1]"},
+     "metres per unit of the mesh [default: as the file says, otherwise 1]"},
     {"up", 0, OPTION_WORD, AT_COMMAND(up), "y|z", 0, 0,
      "axis of the mesh that points up [default y]"},
     GEN_OPTION_SEED(AT(seed)),
@@ -209,7 +209,7 @@ static Result check(const Command *command, Error *error)
 
 Result fur_recipe_parse(FurOptions *options, int argc, char **argv, bool *done, Error *error)
 {
-    Command command = {.recipe = fur_recipe_default(), .output.format = -1, .unit = 1.0};
+    Command command = {.recipe = fur_recipe_default(), .output.format = -1, .unit = 0};
     int first;
     Result result = options_parse(&FUR_RECIPE_PROGRAM, &command, argc, argv, &first, done, error);
     if (result != RESULT_OK || *done) return result;

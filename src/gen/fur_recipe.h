@@ -58,7 +58,7 @@ typedef struct FurOptions {
     FurRecipe recipe;
     GenOutput output;
     const char *mesh;
-    double unit; // metres per unit of the mesh's file
+    double unit; // metres per unit of the mesh's file; 0: as it says, otherwise 1
     bool up_z;
 } FurOptions;
 

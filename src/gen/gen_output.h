@@ -8,7 +8,7 @@
 #pragma once
 
 #include "base/options.h"
-#include "strands/formats/format.h"
+#include "formats/format.h"
 
 #include <stdio.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gen/head_motion.h"
 #include "base/double3.h"
-#include "base/npy_array.h"
 #include "base/portable.h"
-#include "base/zip.h"
+#include "formats/npy_array.h"
+#include "formats/zip.h"
 
 #include <math.h>
 #include <stdlib.h>

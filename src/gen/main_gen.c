@@ -4,15 +4,16 @@
 #include "base/paths.h"
 #include "base/program.h"
 #include "base/quote.h"
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/obj.h"
+#include "formats/strands_read.h"
 #include "gen/fur.h"
 #include "gen/head_motion.h"
 #include "gen/strands_make.h"
 #include "gen/studio_light.h"
 #include "mesh/head.h"
-#include "mesh/mesh_read.h"
-#include "mesh/obj.h"
 #include "mesh/scalp.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <string.h>
@@ -297,6 +298,29 @@ static Result write_fur(const FurOptions *options, const Mesh *mesh, Error *erro
     return result;
 }
 
+// Of a mesh that deforms, the first sample.
+static Result read_mesh(Mesh *mesh, const FurOptions *options, Error *error)
+{
+    if (!mesh_sequence_matches(options->mesh)) {
+        float unit = options->unit > 0 ? (float)options->unit : 1;
+        Result result = mesh_read(mesh, options->mesh, unit, options->up_z, error);
+        return strands_read_as_mesh(result, options->mesh, error);
+    }
+    MeshSequence sequence = {0};
+    Mesh rest = {0};
+    const MeshSequenceOptions wishes = {.unit = options->unit,
+                                        .otherwise_unit = 1,
+                                        .up_z = options->up_z ? 1 : -1,
+                                        .rest = NULL,
+                                        .otherwise_rate = 1};
+    Result result = mesh_sequence_read(&sequence, mesh, &rest, options->mesh, &wishes, error);
+    if (result == RESULT_OK && *sequence.note)
+        fprintf(stderr, "%s: %s\n", quote(options->mesh).text, sequence.note);
+    mesh_sequence_destroy(&sequence);
+    mesh_destroy(&rest);
+    return result;
+}
+
 static Result grow_fur(int argc, char **argv, Error *error)
 {
     FurOptions options;
@@ -312,11 +336,11 @@ static Result grow_fur(int argc, char **argv, Error *error)
     TRY(paths_claim(uses, sizeof uses / sizeof *uses, error));
     activity_start(stderr, options.output.quiet);
     activity_set("growing hair");
-    Result result = mesh_read(&mesh, options.mesh, (float)options.unit, options.up_z, error);
-    TRY(strands_read_as_mesh(result, options.mesh, error));
+    TRY(read_mesh(&mesh, &options, error));
     // After the mesh: a file of hair in its place is the first thing to mend.
-    result = options.output.path ? write_fur(&options, &mesh, error)
-                                 : error_set(error, RESULT_USAGE, "no output: expected -o FILE");
+    Result result = options.output.path
+                        ? write_fur(&options, &mesh, error)
+                        : error_set(error, RESULT_USAGE, "no output: expected -o FILE");
     mesh_destroy(&mesh);
     return result;
 }

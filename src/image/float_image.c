@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "image/exr_file.h"
+#include "image/hdr.h"
 #include "image/jpeg.h"
 #include "image/pfm.h"
 #include "image/png.h"
@@ -26,6 +27,7 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
     bool is_pfm = file.size > 1 && file.data[0] == 'P' && (file.data[1] | 0x20) == 'f';
     Result result = is_pfm               ? pfm_decode(image, &file, path, error)
                     : exr_file_is(&file) ? exr_file_decode(image, &file, path, error)
+                    : hdr_is(&file)      ? hdr_decode(image, &file, path, error)
                                          : png_decode_deep(image, &file, path, error);
     bytes_destroy(&file);
     return result;

@@ -15,7 +15,8 @@ typedef struct FloatImage {
     float *rgb; // [height][width][3], owned
 } FloatImage;
 
-// Reads a file at full depth; its content decides between PNG (8 or 16 bits), PFM and EXR.
+// Reads a file at full depth; its content decides between PNG (8 or 16 bits), PFM, EXR
+// and Radiance .hdr.
 // RESULT_BAD_INPUT with path and reason; RESULT_FAILED when memory is short.
 Result float_image_read_image(Image *image, const char *path, Error *error);
 

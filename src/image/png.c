@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/png.h"
+#include "image/image_kind.h"
+#include "image/png_color.h"
 
 #include "image/png_rows.h"
 
@@ -306,12 +308,20 @@ static Result fail_memory(const char *path, Error *error)
     return error_set(error, RESULT_FAILED, "%s: no memory to read it", path);
 }
 
+static Result refuse_kind(const Bytes *file, const char *path, Error *error)
+{
+    const char *kind = image_kind_name(file);
+    if (kind)
+        return error_set(error, RESULT_BAD_INPUT, "%s: %s, not a PNG file: convert it to PNG", path,
+                         kind);
+    return error_set(error, RESULT_BAD_INPUT, "%s: not a PNG file", path);
+}
+
 static Result open_reader(Codec *codec, const Bytes *file, const char *path, Error *error)
 {
     *codec = (Codec){.bytes = file->data, .size = file->size};
     size_t start = file->size < SIGNATURE_BYTES ? file->size : SIGNATURE_BYTES;
-    if (start == 0 || png_sig_cmp(file->data, 0, start) != 0)
-        return error_set(error, RESULT_BAD_INPUT, "%s: not a PNG file", path);
+    if (start == 0 || png_sig_cmp(file->data, 0, start) != 0) return refuse_kind(file, path, error);
     codec->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, codec, fail, warn, codec,
                                           give_memory, take_memory);
     codec->info = codec->png ? png_create_info_struct(codec->png) : NULL;
@@ -338,6 +348,7 @@ static Result decode(Image *image, bool deep, const Bytes *file, const char *pat
     THEN(result, try_step(&codec, read_header, path, error));
     THEN(result, make_image(&codec, path, error));
     THEN(result, try_step(&codec, read_pixels, path, error));
+    THEN(result, png_color_convert(&codec.image, file, path, error));
     if (result == RESULT_OK)
         *image = codec.image;
     else

@@ -23,7 +23,8 @@ Result png_encode_palette(const Image *image, Bytes *png, Error *error);
 Result png_write(const char *path, const Image *image, Error *error);
 
 // Reads a PNG file of any kind. Grey and palettes become RGB, 16 bits become the upper 8; 4
-// channels with alpha, otherwise 3. Gamma and colour profiles are ignored. RESULT_BAD_INPUT with
+// channels with alpha, otherwise 3. Samples are converted to sRGB as the file says (png_color.h).
+// RESULT_BAD_INPUT with
 // path and reason if the file is missing, not a PNG file, damaged, has more than 2^28 pixels, or if
 // its pixels would take more than 64 times its size plus 64 MiB.
 Result png_read(Image *image, const char *path, Error *error);

@@ -13,6 +13,7 @@ static const char *const OTHERS[] = {
     "resume",       "allow_paths", "stats",         "quiet",
     "verbose",      "sdf_cache",   "backend",       "device",
     "list_devices", "platform",    "software",      "require_hardware",
+    "frame_number",
 };
 
 static const char *const LIVE[] = {
@@ -21,25 +22,16 @@ static const char *const LIVE[] = {
 };
 
 static const char *const KINDS[] = {
-    [PARAM_BOOL] = "bool",
-    [PARAM_INT] = "int",
-    [PARAM_UINT] = "uint",
-    [PARAM_FLOAT] = "float",
-    [PARAM_PROFILE] = "profile",
-    [PARAM_TURN] = "turn",
-    [PARAM_VEC3] = "vec3",
-    [PARAM_COLOR] = "color",
-    [PARAM_BACKGROUND] = "background",
-    [PARAM_AUTO_INT] = "auto_int",
-    [PARAM_AUTO_FLOAT] = "auto_float",
-    [PARAM_AUTO_VEC3] = "auto_vec3",
-    [PARAM_AUTO_COLOR] = "auto_color",
-    [PARAM_UNIT] = "unit",
-    [PARAM_SIZE] = "size",
-    [PARAM_PART] = "part",
-    [PARAM_CHOICE] = "choice",
-    [PARAM_TEXT] = "text",
-    [PARAM_PATH] = "path",
+    [PARAM_BOOL] = "bool",           [PARAM_INT] = "int",
+    [PARAM_UINT] = "uint",           [PARAM_FLOAT] = "float",
+    [PARAM_PROFILE] = "profile",     [PARAM_RATE] = "rate",
+    [PARAM_TURN] = "turn",           [PARAM_VEC3] = "vec3",
+    [PARAM_COLOR] = "color",         [PARAM_BACKGROUND] = "background",
+    [PARAM_AUTO_INT] = "auto_int",   [PARAM_AUTO_FLOAT] = "auto_float",
+    [PARAM_AUTO_VEC3] = "auto_vec3", [PARAM_AUTO_COLOR] = "auto_color",
+    [PARAM_UNIT] = "unit",           [PARAM_SIZE] = "size",
+    [PARAM_PART] = "part",           [PARAM_CHOICE] = "choice",
+    [PARAM_TEXT] = "text",           [PARAM_PATH] = "path",
 };
 
 enum { ROWS = SCENE_PARAMS, MOST_CHOICES = 128 };

@@ -3,8 +3,8 @@
 
 #include "base/json.h"
 #include "base/suggest.h"
+#include "formats/strands_mend.h"
 #include "scene/scene_param.h"
-#include "strands/strands_mend.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -386,6 +386,7 @@ static Result copy_strands(Strands *to, const TractrixStrands *from, uint32_t ve
     for (uint32_t s = 0; s < from->strand_count; ++s)
         to->first[s + 1] = to->first[s] + (from->sizes ? from->sizes[s] : from->vertices_each);
     put_points(to->position, from->position, vertices, from->metres_per_unit, from->up_z);
+    to->relative_widths = true;
     if (copy_floats(&to->vertex_thickness, from->thickness, vertices) &&
         copy_floats(&to->color, from->color, 4 * (size_t)vertices) &&
         copy_floats(&to->strand_uv, from->uv, 2 * (size_t)from->strand_count))

@@ -41,6 +41,14 @@ void mesh_destroy(Mesh *mesh)
     *mesh = (Mesh){0};
 }
 
+void mesh_take_away(Mesh *mesh, const double origin[3])
+{
+    if (origin[0] == 0 && origin[1] == 0 && origin[2] == 0) return;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        for (int k = 0; k < 3; k++)
+            mesh->position[v][k] = (float)(mesh->position[v][k] - origin[k]);
+}
+
 void mesh_bounds(const Mesh *mesh, float low[3], float high[3])
 {
     for (int axis = 0; axis < 3; axis++) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The room mesh: triangle meshes on the CPU. Input: files (mesh_read.h, mesh_sequence.h) or
-// built-in shapes (scalp.h). Output: meshes, and surfaces, which answer queries about points of a
-// mesh, normals and distances (surface.h).
+// The room mesh: triangle meshes on the CPU. Input: meshes of files, which the room formats reads,
+// or built-in shapes (scalp.h). Output: meshes, and surfaces, which answer queries about points of
+// a mesh, normals and distances (surface.h).
 //
 // This file: the triangle mesh of a head or a body.
 #pragma once
@@ -39,6 +39,9 @@ Result mesh_create_uv(Mesh *mesh, uint32_t uv_count, Error *error);
 // Computes smooth normals: the normalised sum of the normals of a vertex's triangles, weighted by
 // area; (0, 1, 0) if the sum is 0 or there are no triangles.
 void mesh_compute_normals(Mesh *mesh);
+
+// Subtracts an origin (m) from all positions.
+void mesh_take_away(Mesh *mesh, const double origin[3]);
 
 // The axis-aligned bounding box of all vertices; {0,0,0} twice for an empty mesh.
 void mesh_bounds(const Mesh *mesh, float low[3], float high[3]);

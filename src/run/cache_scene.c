@@ -13,7 +13,7 @@
 
 // --- The program and driver that simulated.
 
-static const char MAKER[] = "made_by";
+static const char MAKER[] = "made_by", NUMBER[] = "frame_number";
 
 const char *cache_scene_own_maker(void)
 {
@@ -36,7 +36,7 @@ char *cache_scene_maker(const Bytes *text)
 
 // Parameters in the groups below that do not change the motion of guides.
 static const char *const HARMLESS[] = {"frames",    "followers",      "follow", "follower_radius",
-                                       "sdf_cache", "tip_separation", "clump"};
+                                       "sdf_cache", "tip_separation", "clump",  "frame_number"};
 
 // Keys that are not parameters and only concern drawing.
 static const char *const DRAWN[] = {"camera", "lights", "file"};
@@ -109,6 +109,8 @@ Result cache_scene_describe(Bytes *text, const Simulation *simulation, Error *er
     }
     keep_values(object);
     json_object_set_new(object, MAKER, json_string(cache_scene_own_maker()));
+    if (scene->run.frame_number.value) // for programs that name frames; not compared
+        json_object_set_new(object, NUMBER, json_integer(scene->run.frame_number.value));
     char *dump = write_text(object);
     json_decref(object);
     if (!dump) return error_set(error, RESULT_FAILED, "no memory for the scene's values");
@@ -185,6 +187,8 @@ static Result compare(const Bytes *text, json_t *is, void (*forget)(json_t *scen
         keep_values(was); // earlier versions also wrote the parameters of other solvers
         json_object_del(was, MAKER);
         json_object_del(is, MAKER);
+        json_object_del(was, NUMBER);
+        json_object_del(is, NUMBER);
         if (forget) {
             forget(was);
             forget(is);

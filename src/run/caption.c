@@ -77,7 +77,8 @@ void caption_write(char text[CAPTION_BYTES], const Scene *scene, int frame)
         Word word = find_word(at, &length);
         if (text[0]) append(text, "   ");
         snprintf(number, sizeof number, word == WORD_FRAME ? "frame %.0f" : "%.2f s",
-                 word == WORD_FRAME ? frame : schedule_frame_time(&scene->run, frame));
+                 word == WORD_FRAME ? frame + scene->run.frame_number.value
+                                    : schedule_frame_time(&scene->run, frame));
         if (word == WORD_FRAME || word == WORD_TIME)
             append(text, number);
         else

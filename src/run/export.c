@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/export.h"
-#include "strands/formats/format.h"
+#include "formats/format.h"
 #include "strands/paint.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
@@ -13,7 +13,7 @@
 static void set_widths(float *width, const Strands *strands, const SectionParams *params,
                        const Paint *paint)
 {
-    float radius = params->radius.automatic ? paint_auto_radius(strands, 0) : params->radius.value;
+    float radius = paint_radius(params, strands, 0);
     for (uint32_t s = 0; s < strands->strand_count; ++s)
         for (uint32_t first = strands->first[s], j = 0; j < strands_size(strands, s); ++j) {
             float taper =
@@ -131,11 +131,12 @@ static Result describe(Exporter *exporter, const Strands *sections, int frame_co
     bool npz = exporter->kind == FORMAT_NPZ,
          animated = npz ? exporter->target.kind == TARGET_STILL && frame_count > 1
                         : exporter->target.kind == TARGET_VIDEO;
+    int first = run->first + run->frame_number.value;
     exporter->options = (CurvesOptions){.metres_per_unit = 1,
                                         .animated = animated,
                                         .fps = (double)run->fps / (npz ? run->every : 1),
-                                        .first = run->first,
-                                        .last = run->first + (frame_count - 1) * run->every,
+                                        .first = first,
+                                        .last = first + (frame_count - 1) * run->every,
                                         .look = exporter->look.curves};
     if (!exporter->options.animated || frame_count < 1) return RESULT_OK;
     return frames_file_open(&exporter->frames, exporter->kind, exporter->target.before,
@@ -243,6 +244,7 @@ Result exporter_create(Exporter *exporter, const char *text, int frame_count,
         (Exporter){.simulation = simulation, .followers = simulation->scene->run.export_followers};
     uint32_t count = simulation->scene->section_count;
     Result result = format_target(&exporter->target, text, error);
+    exporter->target.offset = simulation->scene->run.frame_number.value;
     THEN(result, check_name(&exporter->target, text, frame_count, error));
     THEN(result, target_prepare(&exporter->target, error));
     THEN(result, (exporter->followers ? prepare_with_followers : prepare)(
@@ -321,8 +323,14 @@ static Result write_file(const Exporter *exporter, int frame, Error *error)
 Result exporter_write(Exporter *exporter, int frame, Error *error)
 {
     TRY(read_positions(exporter, error));
+    double origin[3];
+    memcpy(origin, exporter->strands.origin, sizeof origin);
+    if (!frames_file_has_look(exporter->kind)) { // only scene files have transforms
+        strands_give_back_origin(&exporter->strands);
+        memcpy(exporter->strands.origin, origin, sizeof origin);
+    }
     if (exporter->options.animated)
-        return frames_file_add(&exporter->frames, frame,
+        return frames_file_add(&exporter->frames, frame + exporter->target.offset,
                                (const float(*)[3])exporter->strands.position, error);
     Result result = write_file(exporter, frame, error);
     exporter->files += result == RESULT_OK;

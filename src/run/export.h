@@ -4,9 +4,9 @@
 #pragma once
 
 #include "base/target.h"
+#include "formats/frames_file.h"
+#include "formats/strands_report.h"
 #include "sim/simulation.h"
-#include "strands/formats/frames_file.h"
-#include "strands/strands_report.h"
 
 // Arrays are owned; a zeroed struct is empty.
 typedef struct SceneLook {

@@ -21,6 +21,10 @@ const FingerprintExempt FINGERPRINT_EXEMPT[] = {
     {"points_per_strand", "the hair as it was read counts"},
     {"array", "the hair as it was read counts"},
     {"group", "the hair as it was read counts"},
+    {"object", "the hair as it was read counts"},
+    {"hair_frame", "the hair as it was read counts"},
+    {"mesh_object", "the mesh as it was read counts"},
+    {"frame_number", "the names of the files; captions have it"},
     {"mesh", "its content counts"},
     {"mesh_rest", "the hair that it carries counts"},
     {"mesh_unit", "the mesh as it was read counts"},
@@ -151,7 +155,11 @@ static Result add_map(uint64_t *hash, const char *path, Error *error)
 static Result add_files(uint64_t *hash, const Scene *scene, const Assets *assets, Error *error)
 {
     for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const StrandsFrames *frames = scene->sections[i].frames;
         *hash = add_strands(*hash, &assets->strands[i]);
+        if (frames)
+            *hash = add_array(*hash, frames->position,
+                              (size_t)frames->count * frames->vertices * sizeof *frames->position);
         TRY(add_map(hash, scene->sections[i].params.color_map, error));
     }
     if (assets->environment.parts)

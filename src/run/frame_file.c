@@ -13,12 +13,13 @@
 static Result set_texts(const FrameFile *file, ImageTexts *texts, const FrameExtra *extra,
                         Error *error)
 {
+    const int offset = file->target->offset;
     char text[40];
     if (!texts) return RESULT_OK;
     if (extra)
-        snprintf(text, sizeof text, "%d", file->first);
+        snprintf(text, sizeof text, "%d", file->first + offset);
     else
-        snprintf(text, sizeof text, "%d-%d", file->first, file->last);
+        snprintf(text, sizeof text, "%d-%d", file->first + offset, file->last + offset);
     TRY(image_texts_set(texts, "Frame", text, error));
     if (!extra || !*extra->scene) return RESULT_OK;
     return image_texts_set(texts, FINGERPRINT_KEY, extra->scene, error);

@@ -6,6 +6,7 @@
 #include "base/outfile.h"
 #include "base/quote.h"
 #include "run/cache_scene.h"
+#include "run/played.h"
 #include "sim/simulation_state.h"
 
 #include <stdlib.h>
@@ -221,8 +222,9 @@ static Result record(FrameSource *source, Error *error)
     Result result = cache_writer_add(&source->writer, source->simulation, error);
     if (result != RESULT_OK || clock_ms() - source->written_ms < SAVE_EVERY_MS) return result;
     result = write_state(source->state_path, source->simulation, source->strands, error);
-    simulation_pose(
-        source->simulation); // saving shows the last step's positions; go back to the drawn ones
+    // Saving shows the last step's positions; go back to the drawn ones.
+    simulation_pose(source->simulation);
+    THEN(result, played_show(source->simulation, error));
     source->written_ms = clock_ms();
     return result;
 }
@@ -233,7 +235,10 @@ Result frame_source_go(FrameSource *source, int frame, bool drawn, Error *error)
         return drawn ? cache_reader_show(&source->reader, source->simulation, frame, error)
                      : RESULT_OK;
     TRY(simulate(source, frame, error));
-    if (drawn || source->writes) simulation_pose(source->simulation);
+    if (drawn || source->writes) {
+        simulation_pose(source->simulation);
+        TRY(played_show(source->simulation, error));
+    }
     return source->writes ? record(source, error) : RESULT_OK;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The source of a run's frames: a simulation, a cache (--from-cache), or both if an unfinished
-// --cache is resumed, first the cache. Also writes the cache.
+// The source of a run's frames: a simulation, animated hair files (played.h), a cache
+// (--from-cache), or both if an unfinished --cache is resumed, first the cache. Also writes the
+// cache.
 #pragma once
 
 #include "run/cache.h"

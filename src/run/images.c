@@ -271,7 +271,9 @@ static void take_radii(Images *images)
         bool changes =
             section_tracks_has(&images->scene->sections[i].tracks, params_find("radius"));
         for (int k = 0; k < (section->follow.per_guide ? 2 : 1); ++k, ++item)
-            if (changes) images->items[item].radius = section->params->radius.value;
+            if (changes)
+                images->items[item].radius =
+                    section->params->radius.value * section->params->width_scale;
     }
 }
 

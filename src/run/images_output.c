@@ -33,6 +33,7 @@ static OutputOptions describe(const RunParams *run, int channels, ImageKind kind
         .kind = kind,
         .fps = (double)run->fps / run->every,
         .frame_count = frame_count,
+        .first_number = run->frame_number.value,
         .columns = run->contact_sheet[0],
         .rows = run->contact_sheet[1],
         .exr_float = run->exr_float,

@@ -377,6 +377,7 @@ Result output_create(Output **output, const OutputOptions *options, Error *error
     create_lock(created);
     created->has_texts = options->texts != NULL;
     Result result = target_parse(&created->target, options->target, error);
+    created->target.offset = options->first_number;
     THEN(result, check_options(options, &created->target, error));
     THEN(result, image_texts_copy(&created->texts, options->texts, error));
     THEN(result, create_slots(created, options, error));

@@ -30,6 +30,7 @@ typedef struct OutputOptions {
     bool records;       // of PFM: write the scene of each file into a file next to them (record.h)
     double fps;         // frames per second of videos
     int frame_count;    // number of frames to come, 0: unknown; "x.png" takes 1, or a sheet
+    int first_number;   // number of frame 0, in names and texts
     int columns, rows;  // of a contact sheet of all frames, such as "x.png"; <= 1: no sheet
     const ImageTexts *texts; // of each PNG file, to which the frame's number is added; NULL: none
     int queue_length; // images in the pool: drawn, waiting or being encoded; 0: 3, plus one for

@@ -3,12 +3,12 @@
 #include "base/bytes.h"
 #include "base/target.h"
 #include "draw/renderer_options.h"
+#include "formats/format.h"
 #include "image/exr_file.h"
 #include "image/pfm.h"
 #include "image/png.h"
 #include "run/record.h"
 #include "run/sequence.h"
-#include "strands/formats/format.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -185,6 +185,7 @@ Result resume_find(FramesDone *done, const RunParams *run, int last, const Finge
     Search search = {.run = run, .fingerprint = fingerprint, .done = done};
     *done = (FramesDone){0};
     Result result = parse_targets(&search.images, &search.hair, run, error);
+    search.images.offset = search.hair.offset = run->frame_number.value;
     bool whole = is_whole(&search.images) || is_whole(&search.hair);
     if (result == RESULT_OK && search.images.kind == TARGET_FRAMES &&
         search.images.format == TARGET_PFM)

@@ -235,9 +235,10 @@ static void report_camera(const Run *run)
     if (!params->verbose || moves || !(params->eye.automatic || params->target.automatic)) return;
     if (!params->eye.automatic) eye = params->eye.value;
     if (!params->target.automatic) target = params->target.value;
-    fprintf(stderr, "camera: --eye=%.9g,%.9g,%.9g --target=%.9g,%.9g,%.9g\n", (double)eye[0],
-            (double)eye[1], (double)eye[2], (double)target[0], (double)target[1],
-            (double)target[2]);
+    const double *o = run->scene.world_origin;
+    fprintf(stderr, "camera: --eye=%.9g,%.9g,%.9g --target=%.9g,%.9g,%.9g\n", (double)eye[0] + o[0],
+            (double)eye[1] + o[1], (double)eye[2] + o[2], (double)target[0] + o[0],
+            (double)target[1] + o[1], (double)target[2] + o[2]);
 }
 
 // Fits the camera to the hair, unless the scene sets the camera.
@@ -302,7 +303,7 @@ static void report_filled(const Run *run)
 // vertices 256 MB. Caches and exports still need them.
 static void release_strands(Run *run)
 {
-    if (run->exports || *run->scene.run.cache) return;
+    if (run->exports || *run->scene.run.cache) return; // frames that are played are kept apart
     for (uint32_t i = 0; i < run->assets.section_count; ++i)
         strands_destroy(&run->assets.strands[i]);
 }
@@ -334,11 +335,13 @@ static Result prepare(Run *run, Error *error)
 {
     const RunParams *params = &run->scene.run;
     bool draws = *params->output != 0;
+    run->scene.plays = true;
     activity_start(stderr, params->quiet);
     TRY(run_check(&run->scene, error));
     TRY(check_cache(params, error));
     TRY(assets_load(&run->assets, &run->scene, params->quiet ? NULL : stderr, params->verbose,
                     error));
+    TRY(run_check(&run->scene, error)); // its frames are known now
     TRY(scalp_guess(&run->scene, &run->assets, params->quiet ? NULL : stderr, params->verbose,
                     error));
     // After a guessed scalp has added its colliders.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/run_paths.h"
 #include "base/paths.h"
+#include "formats/format.h"
 #include "run/record.h"
-#include "strands/formats/format.h"
 
 #include <stdlib.h>
 #include <string.h>

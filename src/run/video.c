@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "run/video.h"
+#include "base/rate.h"
 
 #include "base/outfile.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -27,6 +30,8 @@ struct Video {
     pid_t process; // 0: none. Only video_destroy reaps it, so that video_kill never hits another
                    // process
     int input;     // write end of the pipe to ffmpeg's standard input; -1: closed
+    int rest;      // our own read end of this pipe, never read: what ffmpeg leaves in it shows that
+                   // it ended early; -1: closed
     int messages;  // ffmpeg's standard error: a file in memory, which nobody has to drain, unlike a
                    // pipe
     Leftover *group;
@@ -145,7 +150,9 @@ static bool make_command(Command *command, const Format *format, const VideoOpti
 {
     *command = (Command){0};
     snprintf(command->size, sizeof command->size, "%dx%d", options->width, options->height);
-    snprintf(command->rate, sizeof command->rate, "%.9g", options->fps);
+    long frames, seconds;
+    rate_fraction(rate_snap(options->fps), &frames, &seconds);
+    snprintf(command->rate, sizeof command->rate, "%ld/%ld", frames, seconds);
     write_filter(command, format, options);
     // Because the protocol is named, no character of the file's name has a meaning to ffmpeg. The
     // folder is given by the descriptor that ffmpeg inherits, so the file lands there even if the
@@ -220,9 +227,11 @@ static int start(Video *video, const Command *command)
     video->input = ends[1];
     // A request only: with a smaller pipe writing is slower, but works.
     fcntl(video->input, F_SETPIPE_SZ, PIPE_BYTES);
-    int reason = spawn(video, command, ends[0]);
-    close(ends[0]);
-    return reason;
+    // While this process holds a read end, a write to a full pipe would wait for ever for an ffmpeg
+    // that has ended, so writes do not block.
+    fcntl(video->input, F_SETFL, O_WRONLY | O_NONBLOCK);
+    video->rest = ends[0];
+    return spawn(video, command, ends[0]);
 }
 
 static Result start_ffmpeg(Video *video, const Format *format, const VideoOptions *options,
@@ -255,7 +264,7 @@ Result video_create(Video **video, const VideoOptions *options, Error *error)
     TRY(video_check(options, error));
     Video *created = calloc(1, sizeof *created);
     if (!created) return error_set(error, RESULT_FAILED, "%s: no memory", options->path);
-    created->input = created->messages = -1;
+    created->input = created->messages = created->rest = -1;
     Result result = outfile_open(&created->file, options->path, error);
     THEN(result, start_ffmpeg(created, format, options, error));
     if (result == RESULT_OK)
@@ -286,6 +295,13 @@ static void read_last_message(const Video *video, char *text, size_t size)
     if (line) memmove(text, line + 1, strlen(line));
 }
 
+static bool has_ended(const Video *video)
+{
+    siginfo_t end = {0};
+    return waitid(P_PID, (id_t)video->process, &end, WEXITED | WNOWAIT | WNOHANG) == 0 &&
+           end.si_pid != 0;
+}
+
 // Waits until ffmpeg exits and returns its error. The process stays a zombie until video_destroy,
 // so its process number is not reused.
 static Result wait_end(Video *video, Error *error)
@@ -294,6 +310,13 @@ static Result wait_end(Video *video, Error *error)
     siginfo_t end = {0};
     while (waitid(P_PID, (id_t)video->process, &end, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
     }
+    int left = 0;
+    if (video->rest >= 0) ioctl(video->rest, FIONREAD, &left);
+    if (end.si_code == CLD_EXITED && end.si_status == 0 && left > 0)
+        return error_set(error, RESULT_FAILED,
+                         "%s: ffmpeg reported success but stopped reading: %d bytes of frames are "
+                         "left",
+                         video->file.path, left);
     if (end.si_code == CLD_EXITED && end.si_status == 0) return RESULT_OK;
     char message[MESSAGE_TAIL_BYTES];
     read_last_message(video, message, sizeof message);
@@ -312,6 +335,12 @@ Result video_write(Video *video, const Image *image, Error *error)
     while (left > 0) {
         ssize_t written = write(video->input, data, left);
         if (written < 0 && errno == EINTR) continue;
+        if (written < 0 && errno == EAGAIN) {
+            struct pollfd room = {.fd = video->input, .events = POLLOUT};
+            if (poll(&room, 1, 200) != 0 || !has_ended(video)) continue;
+            TRY(wait_end(video, error)); // names the reason, or what is left
+            return error_set(error, RESULT_FAILED, "%s: ffmpeg stopped reading", video->file.path);
+        }
         if (written < 0) {
             // ffmpeg's message says why the pipe broke.
             int reason = errno;
@@ -358,6 +387,7 @@ void video_destroy(Video *video)
         while (waitpid(video->process, NULL, 0) < 0 && errno == EINTR) {
         }
     }
+    if (video->rest >= 0) close(video->rest);
     if (video->messages >= 0) close(video->messages);
     outfile_discard(&video->file);
     free(video);

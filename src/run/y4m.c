@@ -1,36 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "run/y4m.h"
+#include "base/rate.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-// The greatest common divisor, to reduce a frame rate's fraction.
-static long find_divisor(long a, long b)
-{
-    while (b) {
-        long rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
-static void find_rate(double fps, long *frames, long *seconds)
-{
-    static const long units[] = {1, 1001, 1000000};
-    for (int i = 0; i < 3; ++i) {
-        *seconds = units[i];
-        double count = fps * (double)units[i];
-        // Rates over 1001 have whole thousands as numerators. The rate may be rounded to 32 bits,
-        // so the comparison is relative.
-        double step = units[i] == 1001 ? 1000 : 1;
-        *frames = lround(count / step) * (long)step;
-        if (fabs((double)*frames / count - 1) < 2e-6) break; // 29.97 means 30000/1001
-    }
-    long divisor = find_divisor(*frames, *seconds);
-    *frames /= divisor;
-    *seconds /= divisor;
-}
 
 Result y4m_create(Y4m *y4m, const char *path, int width, int height, double fps, Error *error)
 {
@@ -39,7 +12,7 @@ Result y4m_create(Y4m *y4m, const char *path, int width, int height, double fps,
     *y4m = (Y4m){.width = width, .height = height, .planes = malloc(size)};
     if (!y4m->planes) return error_set(error, RESULT_FAILED, "%s: no memory", path);
     TRY(outfile_open(&y4m->file, path, error));
-    find_rate(fps, &frames, &seconds);
+    rate_fraction(rate_snap(fps), &frames, &seconds);
     int head =
         fprintf(y4m->file.stream, "YUV4MPEG2 W%d H%d F%ld:%ld Ip A1:1 C444 XCOLORRANGE=LIMITED\n",
                 width, height, frames, seconds);

@@ -3,12 +3,13 @@
 #include "base/quote.h"
 
 #include "base/activity.h"
-#include "mesh/mesh_read.h"
-#include "mesh/mesh_sequence.h"
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/strands_numbered.h"
+#include "formats/strands_read.h"
 #include "scene/root_distance.h"
 #include "strands/paint.h"
 #include "strands/strands_edit.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,6 +24,7 @@ static StrandsReadOptions read_options(const Scene *scene, const Section *sectio
         .seed = scene->run.seed,
         .points_per_strand = section->params.points_per_strand,
         .array = section->params.array,
+        .objects = section->params.object,
     };
 }
 
@@ -84,25 +86,188 @@ static void take_fibre(Section *section, const Strands *strands, FILE *messages)
                 (double)params->hair_density, (double)params->hair_radius);
 }
 
-static Result pick_group(Strands *strands, const Section *section, Error *error)
+// Removes all other groups; the frames keep all their vertices.
+static Result pick_group(Strands *strands, StrandsFrames *frames, const Section *section,
+                         Error *error)
 {
-    Result result = strands_pick_group(strands, (double)section->params.group.value, error);
+    double group = (double)section->params.group.value;
+    uint32_t kept = 0;
+    for (uint32_t s = 0; frames->count && s < strands->strand_count; ++s)
+        if ((strands->strand_group ? (double)strands->strand_group[s] : 0) == group)
+            frames->first_vertex[kept++] = strands->first[s];
+    Result result = strands_pick_group(strands, group, error);
     if (result == RESULT_OK) return result;
     return error_prefix(error, result, "%s: --group: ", section->file);
 }
 
-static Result load_section(Assets *assets, const Scene *scene, uint32_t i, FILE *messages,
-                           bool verbose, Error *error)
+// --- Far from the world's zero: all places are relative to Scene.world_origin.
+
+// Whether the scene's places can be moved: those that are formulas or keys stay.
+static bool can_recenter(const Scene *scene)
+{
+    return scene->plays && scene->body_count == 1 && !track_is_given(&scene->eye) &&
+           !track_is_given(&scene->target) && !scene->sections[0].given;
+}
+
+static void move_back(float point[3], const double origin[3])
+{
+    for (int k = 0; k < 3; ++k) point[k] = (float)(point[k] - origin[k]);
+}
+
+static void move_collider(Collider *collider, const double origin[3])
+{
+    float *numbers = collider->numbers;
+    switch (collider->kind) {
+    case COLLIDER_CAPSULE:
+        move_back(numbers + 4, origin);
+        move_back(numbers, origin);
+        break;
+    case COLLIDER_SPHERE:
+        move_back(numbers, origin);
+        break;
+    case COLLIDER_GROUND:
+        numbers[0] = (float)(numbers[0] - origin[1]);
+        break;
+    case COLLIDER_PLANE:
+        for (int k = 0; k < 3; ++k)
+            numbers[3] = (float)(numbers[3] - (double)numbers[k] * origin[k]);
+        break;
+    case COLLIDER_KINDS:
+        break;
+    }
+}
+
+// Moves the scene's places, once the first section's hair has its origin.
+static void recenter(Scene *scene, const Strands *first, FILE *messages)
+{
+    RunParams *run = &scene->run;
+    const double *o = first->origin;
+    memcpy(scene->world_origin, o, sizeof scene->world_origin);
+    if (o[0] == 0 && o[1] == 0 && o[2] == 0) return;
+    if (!run->eye.automatic) move_back(run->eye.value, o);
+    if (!run->target.automatic) move_back(run->target.value, o);
+    if (!run->floor_height.automatic)
+        run->floor_height.value = (float)(run->floor_height.value - o[1]);
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        if (scene->lights[i].kind != LIGHT_DIRECTIONAL) move_back(scene->lights[i].position, o);
+    for (uint32_t b = 0; b < scene->body_count; ++b) {
+        move_back(scene->bodies[b].head.pivot, o);
+        for (uint32_t i = 0; i < scene->bodies[b].colliders.count; ++i)
+            move_collider(&scene->bodies[b].colliders.list[i], o);
+    }
+    if (messages)
+        fprintf(messages,
+                "the hair is %.4g m from the world's zero: places are relative to %g,%g,%g\n",
+                sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]), o[0], o[1], o[2]);
+}
+
+// --- Animated hair.
+
+static bool has_default(const Section *section, const char *name)
+{
+    return section->origin[params_find(name) - PARAM_TABLE] == ORIGIN_DEFAULT;
+}
+
+// Whether the section's file is played if it is animated.
+static bool may_play(const Scene *scene, const Section *section)
+{
+    return scene->plays && section->params.hair_frame.automatic &&
+           (has_default(section, "algo") || strcmp(section->params.algo, "none") == 0);
+}
+
+// The rest pose is that of --hair-frame.
+static Result take_frame(Strands *strands, const StrandsFrames *frames, const Section *section,
+                         Error *error)
+{
+    const AutoInt *wanted = &section->params.hair_frame;
+    int place = wanted->value - frames->first, count = (int)frames->count;
+    if (wanted->automatic) return RESULT_OK;
+    if (count == 0)
+        return error_set(error, RESULT_USAGE,
+                         "%s: --hair-frame has no effect: the file has one frame", section->file);
+    if (place < 0 || place >= count)
+        return error_set(error, RESULT_USAGE, "%s: --hair-frame %d: the file has frames %d to %d",
+                         section->file, wanted->value, frames->first, frames->first + count - 1);
+    memcpy(strands->position, frames->position + (size_t)place * strands->vertex_count,
+           strands->vertex_count * sizeof *strands->position);
+    return RESULT_OK;
+}
+
+// Makes a section play its file's frames.
+static Result play(Assets *assets, Scene *scene, uint32_t i, FILE *messages, Error *error)
+{
+    Section *section = &scene->sections[i];
+    StrandsFrames *frames = &assets->frames[i];
+    const Strands *strands = &assets->strands[i];
+    char *none = strdup("none");
+    frames->first_vertex = malloc(((size_t)strands->strand_count + 1) * sizeof(uint32_t));
+    if (!frames->first_vertex || !none) {
+        free(none);
+        return error_set(error, RESULT_FAILED, "no memory for %s", section->file);
+    }
+    memcpy(frames->first_vertex, strands->first,
+           ((size_t)strands->strand_count + 1) * sizeof(uint32_t));
+    free(section->params.algo);
+    section->params.algo = none;
+    if (!(frames->fps > 0)) frames->fps = scene->run.fps;
+    section->frames = frames;
+    if (messages)
+        fprintf(
+            messages,
+            "%s: %u frames from %d on, %.6g a second, are played; --algo NAME simulates instead\n",
+            quote(section->file).text, frames->count, frames->first, frames->fps);
+    return RESULT_OK;
+}
+
+// The run's frames and rate are those of the longest animation that is played.
+static void take_length(Scene *scene)
+{
+    RunParams *run = &scene->run;
+    const StrandsFrames *longest = NULL;
+    for (uint32_t i = 0; i < scene->section_count; ++i) {
+        const StrandsFrames *frames = scene->sections[i].frames;
+        if (frames && (!longest || frames->count > longest->count)) longest = frames;
+    }
+    if (!longest) return;
+    if (scene_has_default(scene, "fps") && longest->fps >= 0.001 && longest->fps <= 10000)
+        run->fps = longest->fps;
+    double frames = (longest->count - 1) * run->fps / (longest->fps * (double)run->speed);
+    if (scene_has_default(scene, "frames") && run->speed > 0 && frames < 1e7)
+        run->frames = (int)(frames + 1e-6) + 1;
+}
+
+// The number of the first frame: that of the hair that is played, otherwise of the mesh.
+static Result number_frames(Assets *assets, Scene *scene, Error *error)
+{
+    RunParams *run = &scene->run;
+    for (uint32_t i = scene->section_count; i-- > 0;)
+        if (scene->sections[i].frames) assets->first_number = scene->sections[i].frames->first;
+    if (!scene->plays) return RESULT_OK;
+    if (run->frame_number.automatic)
+        run->frame_number = (AutoInt){.value = assets->first_number > 0 ? assets->first_number : 0};
+    return scene_number_frames(scene, error);
+}
+
+static Result load_section(Assets *assets, Scene *scene, uint32_t i, FILE *messages, bool verbose,
+                           Error *error)
 {
     const Section *section = &scene->sections[i];
-    const StrandsReadOptions options = read_options(scene, section);
+    StrandsReadOptions options = read_options(scene, section);
+    options.recenters = i == 0 && can_recenter(scene);
+    options.origin = scene->world_origin;
     if (section->given) return take_given(assets, i, section->given, error);
     activity_set("reading hair");
-    Result result =
-        strands_read(&assets->strands[i], section->file, &options, &assets->reports[i], error);
+    bool plays = may_play(scene, section), all = plays || !section->params.hair_frame.automatic;
+    StrandsFrames *frames = &assets->frames[i];
+    Result result = strands_read_any(&assets->strands[i], all ? frames : NULL, section->file,
+                                     &options, &assets->reports[i], error);
     activity_set(NULL);
+    if (result == RESULT_OK && options.recenters) recenter(scene, &assets->strands[i], messages);
+    THEN(result, take_frame(&assets->strands[i], frames, section, error));
+    if (!plays || frames->count < 2) strands_frames_destroy(frames);
+    if (result == RESULT_OK && frames->count) result = play(assets, scene, i, messages, error);
     if (result == RESULT_OK && !section->params.group.automatic)
-        result = pick_group(&assets->strands[i], section, error);
+        result = pick_group(&assets->strands[i], frames, section, error);
     if (result != RESULT_OK || !messages) return result;
     strands_report_print_mended(&assets->reports[i], section->file, messages);
     warn_ignored(&assets->strands[i], section->file, messages);
@@ -129,6 +294,7 @@ static void warn_apart(const Body *body, FILE *messages)
 typedef struct BodyLoad {
     Assets *assets;
     const RunParams *run;
+    const double *origin; // the scene's
     SceneBody *body;
     Mesh *mesh;
     Body *shape;
@@ -162,6 +328,11 @@ static Result load_sequence(const BodyLoad *load, const MeshSequenceOptions *opt
     Result result =
         mesh_sequence_read(&sequence, load->mesh, &rest, load->body->params.mesh, options, error);
     bool deforms = sequence.times.count > 1 || rest.vertex_count > 0;
+    if (result == RESULT_OK && sequence.times.count > 1 && load->assets->first_number == 0 &&
+        sequence.first > 0 && sequence.first < 1e8)
+        load->assets->first_number = (int)(sequence.first + 0.5);
+    if (result == RESULT_OK && load->messages && *sequence.note)
+        fprintf(load->messages, "%s: %s\n", quote(load->body->params.mesh).text, sequence.note);
     if (result == RESULT_OK && deforms) result = bind_hair(load, &sequence, &rest, error);
     mesh_sequence_destroy(&sequence);
     mesh_destroy(&rest);
@@ -215,16 +386,19 @@ static Result load_body(const BodyLoad *load, Error *error)
         .up_z = params->mesh_up == UP_AUTO ? -1 : params->mesh_up == UP_Z,
         .otherwise_up_z = first && first->up_z,
         .rest = params->mesh_rest,
+        .objects = params->mesh_object,
         .rate = params->mesh_fps.automatic ? 0 : (double)params->mesh_fps.value,
         .otherwise_rate = (double)load->run->fps,
         .start = (double)params->mesh_start,
         .linear = params->mesh_motion == MESH_LINEAR,
     };
+    memcpy(options.origin, load->origin, sizeof options.origin);
     activity_set("reading the mesh");
     if (mesh_sequence_matches(params->mesh)) return load_sequence(load, &options, error);
     float unit = (float)(options.unit > 0 ? options.unit : options.otherwise_unit);
     bool up_z = (options.up_z >= 0 ? options.up_z : options.otherwise_up_z) == 1;
     Result result = mesh_read(load->mesh, params->mesh, unit, up_z, error);
+    if (result == RESULT_OK) mesh_take_away(load->mesh, load->origin);
     return strands_read_as_mesh(result, params->mesh, error);
 }
 
@@ -233,17 +407,21 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
     *assets = (Assets){.section_count = scene->section_count, .body_count = scene->body_count};
     assets->strands = calloc((size_t)scene->section_count + 1, sizeof *assets->strands);
     assets->reports = calloc((size_t)scene->section_count + 1, sizeof *assets->reports);
+    assets->frames = calloc((size_t)scene->section_count + 1, sizeof *assets->frames);
     assets->meshes = calloc((size_t)scene->body_count + 1, sizeof *assets->meshes);
     assets->bodies = calloc((size_t)scene->body_count + 1, sizeof *assets->bodies);
-    if (!assets->strands || !assets->reports || !assets->meshes || !assets->bodies)
+    if (!assets->strands || !assets->reports || !assets->frames || !assets->meshes ||
+        !assets->bodies)
         return error_set(error, RESULT_FAILED, "no memory for %u sections", scene->section_count);
     for (uint32_t i = 0; i < scene->section_count; ++i) {
         TRY(load_section(assets, scene, i, messages, verbose, error));
         take_fibre(&scene->sections[i], &assets->strands[i], messages);
     }
+    take_length(scene);
     for (uint32_t b = 0; b < scene->body_count; ++b) {
         const BodyLoad load = {.assets = assets,
                                .run = &scene->run,
+                               .origin = scene->world_origin,
                                .body = &scene->bodies[b],
                                .mesh = &assets->meshes[b],
                                .shape = &assets->bodies[b],
@@ -256,6 +434,7 @@ Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, E
                                    (double)assets->reports[scene->bodies[b].first].unit_used,
                                    messages, error));
     }
+    TRY(number_frames(assets, scene, error));
     if (*scene->run.environment)
         TRY(environment_read(&assets->environment, scene->run.environment,
                              scene->run.environment_background, error));
@@ -266,12 +445,15 @@ void assets_destroy(Assets *assets)
 {
     for (uint32_t i = 0; assets->strands && i < assets->section_count; ++i)
         strands_destroy(&assets->strands[i]);
+    for (uint32_t i = 0; assets->frames && i < assets->section_count; ++i)
+        strands_frames_destroy(&assets->frames[i]);
     for (uint32_t b = 0; assets->meshes && b < assets->body_count; ++b)
         mesh_destroy(&assets->meshes[b]);
     for (uint32_t b = 0; assets->bodies && b < assets->body_count; ++b)
         body_destroy(&assets->bodies[b]);
     free(assets->strands);
     free(assets->reports);
+    free(assets->frames);
     free(assets->meshes);
     free(assets->bodies);
     environment_destroy(&assets->environment);
@@ -288,7 +470,7 @@ Result assets_check(const Scene *scene, FILE *stream)
         StrandsReport report;
         Error error;
         options.strict = false; // report all defects, do not refuse the file
-        Result result = strands_read(&strands, section->file, &options, &report, &error);
+        Result result = strands_read_any(&strands, NULL, section->file, &options, &report, &error);
         if (result == RESULT_OK) {
             strands_report_print(&report, section->file, stream);
             if (!strands_report_is_clean(&report)) result = RESULT_FAILED;

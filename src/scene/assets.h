@@ -2,15 +2,18 @@
 // The files of a scene: hair of all sections, the mesh and the environment image.
 #pragma once
 
+#include "formats/strands_read.h"
 #include "mesh/mesh.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
-#include "strands/strands_read.h"
 
 typedef struct Assets {
     uint32_t section_count;
     Strands *strands;       // [section_count]
     StrandsReport *reports; // [section_count]
+    StrandsFrames *frames;  // [section_count] of the sections that are played; otherwise empty
+    int first_number;       // where the animated mesh or hair begins, in its file's frames; 0 if
+                            // nothing says so
     uint32_t body_count;
     Mesh *meshes;            // [body_count]; empty if there is none; of a sequence: at time 0
     Body *bodies;            // [body_count], the deforming meshes; zero if there is none
@@ -21,7 +24,13 @@ typedef struct Assets {
 // head (SceneBody.head.samples) as long as the assets exist; strands lie on it as at time 0. The
 // material in a hair file becomes the default of elastic sections (section_is_elastic). Prints what
 // was mended and, if `verbose`, guessed units on `messages` (NULL: does not print). Errors of
-// strands_read and mesh_read; the assets may be destroyed after an error.
+// strands_read and mesh_read.
+//
+// Animated hair: with scene->plays, a section of --algo none (which is then the default of an
+// animated file) is played: Section.frames has the frames, and frames and fps of the run are the
+// file's unless they are given. Otherwise the hair is that of --hair-frame. Sets run.frame_number
+// to first_number if it is automatic, and then run.first and run.last to places from 0.
+// RESULT_USAGE if they are not among the frames; the assets may be destroyed after an error.
 Result assets_load(Assets *assets, Scene *scene, FILE *messages, bool verbose, Error *error);
 void assets_destroy(Assets *assets);
 

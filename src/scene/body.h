@@ -4,8 +4,8 @@
 // head is where the files have it, and hair is bound to the mesh of that time.
 #pragma once
 
+#include "formats/mesh_sequence.h"
 #include "mesh/mesh_binding.h"
-#include "mesh/mesh_sequence.h"
 #include "scene/rigid_track.h"
 #include "strands/strands.h"
 

@@ -74,9 +74,9 @@ Result environment_read(Environment *environment, const char *path, bool keep, E
     TRY(float_image_read_image(&image, path, error));
     Result result = RESULT_OK;
     if (image.kind != IMAGE_FLOAT)
-        result = error_set(error, RESULT_BAD_INPUT,
-                           "%s: this image has no light above white: expected an .exr or .pfm file",
-                           path);
+        result = error_set(
+            error, RESULT_BAD_INPUT,
+            "%s: this image has no light above white: expected an .exr, .hdr or .pfm file", path);
     else if (image.width != 2 * image.height)
         result = error_set(error, RESULT_BAD_INPUT,
                            "%s: the image has %d x %d px: expected an equirectangular one, twice "

@@ -38,7 +38,8 @@ typedef enum Origin {
 
 // One hair file, its behaviour and its look.
 typedef struct Section {
-    char *file;                   // owned; relative to the working folder
+    char *file;                         // owned; relative to the working folder
+    const struct StrandsFrames *frames; // of its file, if they are played; owned by Assets
     const Strands *given;         // hair from memory, for which `file` is only a name; not owned
     SectionParams params;         // animated parameters: the value at time 0
     SectionTracks tracks;         // animated parameters
@@ -110,6 +111,9 @@ typedef struct Scene {
     Track eye, target;              // width 3, m; if not given, run.eye and run.target
     Track fov;                      // width 1, deg; if not given, run.fov
     Light lights[SCENE_MAX_LIGHTS]; // those of the look if the user gives none
+    double world_origin[3];         // m: taken away from all places of the scene by assets_load,
+                                    // because its hair is far from the world's zero
+    bool plays;                     // animated hair files are played (set by programs that draw)
     bool own_lights;                // the user gives lights, or an empty list
     uint32_t light_count;           // 0 if the user gives an empty list: ambient light only
 } Scene;
@@ -203,6 +207,10 @@ Result scene_parse_unchecked(Scene *scene, const char *name, const Bytes *conten
 // Checks that the values fit together: frame range, camera, message flags, device flags, the '%' in
 // an output pattern, names of files. RESULT_USAGE with the conflicting flags.
 Result scene_check(const Scene *scene, Error *error);
+
+// Makes run.first and run.last places from 0, once run.frame_number is known. RESULT_USAGE if they
+// are not among the run's frames.
+Result scene_number_frames(Scene *scene, Error *error);
 
 // Whether the images store linear light (.pfm, .exr).
 bool scene_draws_floats(const RunParams *run);

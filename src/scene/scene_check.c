@@ -4,24 +4,55 @@
 #include "scene/schedule.h"
 
 #include <string.h>
+#include <strings.h>
 
-static Result check_frames(const RunParams *run, Error *error)
+// Whether a file may have frames with numbers of its own, so that the number of the first frame is
+// known only when it is read.
+static bool may_have_numbers(const Scene *scene)
 {
+    static const char *const suffixes[] = {".usda", ".abc", ".npz"};
+    for (uint32_t b = 0; b < scene->body_count; b++)
+        if (*scene->bodies[b].params.mesh) return true;
+    for (uint32_t i = 0; i < scene->section_count; i++) {
+        const char *file = scene->sections[i].file, *suffix = strrchr(file, '.');
+        if (strchr(file, '%')) return true;
+        for (int k = 0; suffix && k < 3; k++)
+            if (strcasecmp(suffix, suffixes[k]) == 0) return true;
+    }
+    return false;
+}
+
+Result scene_number_frames(Scene *scene, Error *error)
+{
+    RunParams *run = &scene->run;
+    int number = run->frame_number.value, end = number + run->frames - 1;
+    bool given = !scene_has_default(scene, "first");
+    if (given && (run->first < number || run->first > end))
+        return error_set(error, RESULT_USAGE, "--first %d: expected %d to %d, since --frames is %d",
+                         run->first, number, end, run->frames);
+    int first = given ? run->first : number;
+    if (run->last >= 0 && (run->last < first || run->last > end))
+        return error_set(error, RESULT_USAGE,
+                         "--last %d: expected %d to %d (or -1), since --frames is %d", run->last,
+                         first, end, run->frames);
+    run->first = first - number;
+    if (run->last >= 0) run->last -= number;
+    return RESULT_OK;
+}
+
+static Result check_frames(const Scene *scene, Error *error)
+{
+    const RunParams *run = &scene->run;
     const float slowest = 1e-4f;
     if (run->speed > 0 && run->speed < slowest)
         return error_set(error, RESULT_USAGE, "--speed %g: expected 0 or at least %g",
                          (double)run->speed, (double)slowest);
-    if (run->first >= run->frames)
-        return error_set(error, RESULT_USAGE, "--first %d: expected 0 to %d, since --frames is %d",
-                         run->first, run->frames - 1, run->frames);
-    if (run->last >= run->frames)
-        return error_set(error, RESULT_USAGE,
-                         "--last %d: expected %d to %d (or -1), since --frames is %d", run->last,
-                         run->first, run->frames - 1, run->frames);
     if (run->last >= 0 && run->last < run->first)
         return error_set(error, RESULT_USAGE, "--last %d: expected %d or more, since --first is %d",
                          run->last, run->first, run->first);
-    return RESULT_OK;
+    if (run->frame_number.automatic && may_have_numbers(scene)) return RESULT_OK;
+    Scene numbered = *scene; // only its numbers change
+    return scene_number_frames(&numbered, error);
 }
 
 static bool is_same_point(const float a[3], const float b[3])
@@ -177,7 +208,7 @@ Result scene_check(const Scene *scene, Error *error)
     const RunParams *run = &scene->run;
     if (scene->section_count == 0 && !run->list_devices && !run->platform)
         return error_set(error, RESULT_USAGE, "no hair: expected a hair file or a scene file");
-    TRY(check_frames(run, error));
+    TRY(check_frames(scene, error));
     TRY(check_camera(scene, error));
     TRY(check_conflicts(run, error));
     TRY(check_depth(scene, error));

@@ -22,6 +22,7 @@ static const Form FORMS[] = {
     [PARAM_UINT] = {.number = true},
     [PARAM_FLOAT] = {.number = true},
     [PARAM_PROFILE] = {.number = true, .points = true},
+    [PARAM_RATE] = {.string = true, .number = true},
     [PARAM_TURN] = {.number = true},
     [PARAM_VEC3] = {.numbers = 3},
     [PARAM_COLOR] = {.string = true, .numbers = 3},
@@ -207,6 +208,8 @@ json_t *scene_param_write(const ParamInfo *info, const void *params)
     case PARAM_FLOAT:
     case PARAM_TURN:
         return scene_param_write_float(*(const float *)field);
+    case PARAM_RATE:
+        return json_real(*(const double *)field);
     case PARAM_PROFILE:
         return write_profile(field);
     case PARAM_VEC3:

@@ -163,6 +163,8 @@ static json_t *value_of(const ParamInfo *info, const SchemaSolver *solvers)
     case PARAM_FLOAT:
     case PARAM_TURN:
         return real(least, most);
+    case PARAM_RATE:
+        return either(real(least, most), pattern(NUMBER_TEXT "(/" NUMBER_TEXT ")?"));
     case PARAM_PROFILE:
         return either(real(least, most), points(least, most));
     case PARAM_VEC3:

@@ -501,6 +501,17 @@ Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
     return result;
 }
 
+Result simulation_show_section(Simulation *simulation, uint32_t i, const float (*positions)[3],
+                               Error *error)
+{
+    SimulationSection *section = &simulation->sections[i];
+    TRY(hair_write_positions(&section->hair, positions, error));
+    write_followers(simulation, section);
+    section->posed = false;
+    ++simulation->changes;
+    return RESULT_OK;
+}
+
 SolverReport simulation_report(const Simulation *simulation)
 {
     SolverReport report = {0};

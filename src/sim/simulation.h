@@ -103,6 +103,11 @@ void simulation_pose(Simulation *simulation);
 Result simulation_show(Simulation *simulation, int frame, const HeadPose *head,
                        const float (*positions)[3], Error *error);
 
+// Replaces the drawn positions of a section after simulation_pose; followers are computed from
+// them. `positions`: as in hair_write_positions. RESULT_FAILED when memory is short.
+Result simulation_show_section(Simulation *simulation, uint32_t section,
+                               const float (*positions)[3], Error *error);
+
 // The scene's time (s) after `step` steps, for head and mesh. 0 during the warm-up (step < 0).
 double simulation_step_time(const Simulation *simulation, int64_t step);
 

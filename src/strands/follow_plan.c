@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "strands/follow_plan.h"
 
+#include "strands/paint.h"
+
 #include "base/double3.h"
 #include "base/nearest.h"
 #include "base/random.h"
@@ -45,19 +47,27 @@ static bool may_fill(const SectionParams *params, const Strands *strands)
     return params->followers.automatic && !strands->followers && follow_plan_fill(strands) > 0;
 }
 
+// Whether neither the user nor the file gives the width of the fibres.
+static bool has_automatic_width(const SectionParams *params, const Strands *strands)
+{
+    return params->radius.automatic && !(paint_file_radius(params, strands) > 0);
+}
+
 bool follow_plan_fills(const SectionParams *params, const Strands *strands)
 {
-    return params->radius.automatic && may_fill(params, strands);
+    return has_automatic_width(params, strands) && may_fill(params, strands);
 }
 
 void follow_plan_tell_gaps(const SectionParams *params, const Strands *strands, const char *name,
                            FILE *stream)
 {
-    if (params->radius.automatic || !may_fill(params, strands)) return;
+    if (has_automatic_width(params, strands) || !may_fill(params, strands)) return;
     fprintf(stream,
-            "%s: the space between %u strands is not filled because --radius is given: --followers "
+            "%s: the space between %u strands is not filled because %s: --followers "
             "%u --follow interpolate fills it\n",
-            name, strands->strand_count, follow_plan_fill(strands));
+            name, strands->strand_count,
+            params->radius.automatic ? "the file has widths" : "--radius is given",
+            follow_plan_fill(strands));
 }
 
 FollowOptions follow_plan_options(const SectionParams *params, const Strands *strands,

@@ -384,7 +384,23 @@ float paint_auto_radius(const Strands *strands, uint32_t followers)
     return (float)fmin(fmax(radius, longest * THINNEST), fmax(longest * THICKEST, fur));
 }
 
+float paint_file_radius(const SectionParams *params, const Strands *strands)
+{
+    double mean = 0, longest = 0;
+    if (!params->radius.automatic || !params->file_thickness || !strands->vertex_thickness ||
+        strands->relative_widths)
+        return 0;
+    for (uint32_t v = 0; v < strands->vertex_count; ++v)
+        mean += fabs((double)strands->vertex_thickness[v]) / strands->vertex_count;
+    for (uint32_t s = 0; s < strands->strand_count; ++s)
+        longest = fmax(longest, strands_length(strands, s));
+    return mean > 1e-7 && mean < longest / 5 ? (float)(mean / 2) : 0;
+}
+
 float paint_radius(const SectionParams *params, const Strands *strands, uint32_t followers)
 {
-    return params->radius.automatic ? paint_auto_radius(strands, followers) : params->radius.value;
+    float radius = params->radius.value;
+    if (params->radius.automatic) radius = paint_file_radius(params, strands);
+    if (!(radius > 0)) radius = paint_auto_radius(strands, followers);
+    return params->width_scale * radius;
 }

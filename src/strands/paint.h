@@ -62,5 +62,11 @@ SectionParams paint_as_seen(const SectionParams *params);
 // silhouette's side (the square root of its area). It is at least 1/5000 of the longest strand.
 float paint_auto_radius(const Strands *strands, uint32_t followers);
 
-// The section's radius if it has one, otherwise paint_auto_radius.
+// Half the mean width of the file's vertices, in metres, if the fibres are drawn with these widths:
+// the section has no radius of its own and uses the file's thickness, and the widths are those of
+// hair (below a fifth of the longest strand). Otherwise 0.
+float paint_file_radius(const SectionParams *params, const Strands *strands);
+
+// The radius that is drawn: width_scale times the section's radius if it has one, otherwise
+// paint_file_radius, otherwise paint_auto_radius.
 float paint_radius(const SectionParams *params, const Strands *strands, uint32_t followers);

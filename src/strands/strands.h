@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The room strands: hair strands on the CPU as files describe them, polylines from root to tip.
 //
-// It reads and writes hair files (strands_read.h, formats/format.h), mends and reports their
-// defects, measures and edits strands, and computes their colours and radii (paint.h) and their
-// followers (follow_plan.h). Input: files and SectionParams. Output: Strands in metres, y up, which
-// `sim` uploads to the GPU.
+// It measures and edits strands, and computes their colours and radii (paint.h) and their followers
+// (follow_plan.h). Input: strands of files, which the room formats reads, and SectionParams.
+// Output: Strands in metres, y up, which `sim` uploads to the GPU.
 #pragma once
 
 #include "base/error.h"
@@ -26,12 +25,15 @@ typedef struct Strands {
     float (*vertex_uv)[2]; // [vertex_count]
     float *strand_thickness; // [strand_count], factor or width as the file says (TressFX)
     float *strand_group;     // [strand_count] integers from 0: group of the groom
-    float *vertex_thickness; // [vertex_count], metres (HAIR files)
+    float *vertex_thickness; // [vertex_count] widths, metres
+    bool relative_widths;    // they have no unit: only their ratios count
     float (*color)[4];       // [vertex_count], linear RGB and opacity, 0..1
     uint32_t followers;      // per guide, as the file asks for
     float follower_radius;   // metres, largest distance from the guide; 0 if the file has none
     bool both_ends_fixed;    // tips are fixed, too
-    Fibre fibre;             // as the file says, in SI units whatever the unit of positions
+    double origin[3]; // m, y up: the place in the file's world where the positions have their zero;
+                      // 0 unless the reader was asked to take it away (far from the world's zero)
+    Fibre fibre;      // as the file says, in SI units whatever the unit of positions
     // Unit (m) and axis of positions that were converted for a file by strands_to_unit. Otherwise
     // unit is 0, and positions are in metres with y up.
     double unit;

@@ -98,7 +98,33 @@ void strands_move(Strands *strands, const StrandsMove *move)
             strands->position[v][i] = (float)x;
         }
     }
+    const double o[3] = {strands->origin[0], strands->origin[1], strands->origin[2]};
+    for (int i = 0; i < 3; i++)
+        strands->origin[i] =
+            move->scale * (move->rotation[i][0] * o[0] + move->rotation[i][1] * o[1] +
+                           move->rotation[i][2] * o[2]);
     scale_sizes(strands, move->scale);
+}
+
+bool strands_are_far(const Strands *strands)
+{
+    return strands->origin[0] != 0 || strands->origin[1] != 0 || strands->origin[2] != 0;
+}
+
+void strands_find_origin(const Strands *strands, double metres, bool up_z, double origin[3])
+{
+    const double *o = strands->origin;
+    origin[0] = o[0] / metres;
+    origin[1] = (up_z ? -o[2] : o[1]) / metres;
+    origin[2] = (up_z ? o[1] : o[2]) / metres;
+}
+
+void strands_give_back_origin(Strands *strands)
+{
+    for (uint32_t v = 0; strands_are_far(strands) && v < strands->vertex_count; v++)
+        for (int i = 0; i < 3; i++)
+            strands->position[v][i] = (float)(strands->position[v][i] + strands->origin[i]);
+    memset(strands->origin, 0, sizeof strands->origin);
 }
 
 void strands_to_unit(Strands *strands, double metres, bool up_z)
@@ -169,6 +195,8 @@ Result strands_pick(Strands *strands, const uint32_t *which, uint32_t count, Err
     other.follower_radius = strands->follower_radius;
     other.both_ends_fixed = strands->both_ends_fixed;
     other.fibre = strands->fibre;
+    other.relative_widths = strands->relative_widths;
+    memcpy(other.origin, strands->origin, sizeof other.origin);
     strands_destroy(strands);
     *strands = other;
     return RESULT_OK;
@@ -239,6 +267,9 @@ Result strands_join(Strands *all, const Strands *sets, uint32_t count, Error *er
     all->follower_radius = same ? sets[0].follower_radius : 0.0f;
     all->both_ends_fixed = fixed;
     if (one_fibre) all->fibre = sets[0].fibre;
+    if (count) memcpy(all->origin, sets[0].origin, sizeof all->origin);
+    for (uint32_t i = 0; i < count; ++i)
+        all->relative_widths = all->relative_widths || sets[i].relative_widths;
     return RESULT_OK;
 }
 

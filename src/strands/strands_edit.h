@@ -29,13 +29,23 @@ StrandsMove strands_move_none(void);
 // of the axis.
 StrandsMove strands_move_rotation(int axis, double angle_deg);
 
-// Computes in double and rounds once; the identity leaves all bits unchanged. Vertex thickness
+// Computes in double and rounds once; the identity leaves all bits unchanged. The origin is scaled
+// and rotated. Vertex thickness
 // (metres) and the followers' radius are scaled, too.
 void strands_move(Strands *strands, const StrandsMove *move);
 
 // Converts to another unit and axis for writing: positions in units of `metres`, with z up (x, -z,
 // y) or y up. The inverse of reading with this unit and axis.
 void strands_to_unit(Strands *strands, double metres, bool up_z);
+
+// --- Far from the world's zero.
+
+// Whether the positions have an origin, and this origin in another unit and axis.
+bool strands_are_far(const Strands *strands);
+void strands_find_origin(const Strands *strands, double metres, bool up_z, double origin[3]);
+
+// Adds the origin (metres, y up) to the positions, which rounds them to float32.
+void strands_give_back_origin(Strands *strands);
 
 // --- Selecting and ordering.
 

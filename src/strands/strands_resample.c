@@ -185,6 +185,8 @@ static void move_the_rest(Strands *to, Strands *from)
     to->follower_radius = from->follower_radius;
     to->both_ends_fixed = from->both_ends_fixed;
     to->fibre = from->fibre;
+    to->relative_widths = from->relative_widths;
+    memcpy(to->origin, from->origin, sizeof to->origin);
 }
 
 Result strands_resample(Strands *strands, const ResampleOptions *options, Error *error)

@@ -3,16 +3,16 @@
 // allocation fails each time, also in the libraries. Then the result is an error or what it would
 // have been, never a part of it.
 #include "base/bytes.h"
+#include "formats/format.h"
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/strands_read.h"
 #include "gen/strands_make.h"
 #include "image/exr_file.h"
 #include "image/jpeg.h"
 #include "image/pfm.h"
 #include "image/png.h"
-#include "mesh/mesh_read.h"
-#include "mesh/mesh_sequence.h"
 #include "scene/scene.h"
-#include "strands/formats/format.h"
-#include "strands/strands_read.h"
 #include "support/temporary.h"
 
 #include <limits.h>

@@ -4,8 +4,8 @@
 // that the light grid follows. The light that scattering adds to the image must stay the same.
 #include "bench/light_case.h"
 #include "bench/light_stage.h"
+#include "formats/format.h"
 #include "gen/strands_make.h"
-#include "strands/formats/format.h"
 #include "support/hair_fixture.h"
 #include "support/needed.h"
 #include "support/temporary.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/fuzz.h"
 
-#include "strands/formats/format.h"
+#include "formats/format.h"
 
 #include <ctype.h>
 #include <ftw.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Hair files: strands that were read are valid, and writing and reading them again gives the same.
+#include "formats/format.h"
+#include "formats/strands_read.h"
 #include "fuzz/fuzz.h"
-#include "strands/formats/format.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <string.h>

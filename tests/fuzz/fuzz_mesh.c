@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Meshes of Wavefront OBJ and PLY, and animated meshes of Alembic and USD.
+#include "formats/mesh_read.h"
+#include "formats/mesh_sequence.h"
+#include "formats/obj.h"
 #include "fuzz/fuzz.h"
-#include "mesh/mesh_read.h"
-#include "mesh/mesh_sequence.h"
-#include "mesh/obj.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The bundled haircuts fit the bundled head as scripts/make-assets grew them: roots lie on the
 // skull, nothing is inside, and the face is free.
-#include "mesh/mesh_read.h"
+#include "formats/mesh_read.h"
+#include "formats/strands_read.h"
 #include "mesh/surface.h"
-#include "strands/strands_read.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -99,7 +99,7 @@ refused 3 "empty.obj:2: no faces" fur "$work/empty.obj"
 refused 3 "bob.tfx: hair (TressFX 3 binary), not a mesh: expected a mesh" fur assets/bob.tfx
 "$bin/tractrix-convert" assets/bob.tfx --nth 50 -q -o "$work/lines.obj" && "$bin/tractrix-convert" assets/bob.tfx --nth 50 -q -o "$work/hair.npz"
 refused 3 "lines.obj: hair (Wavefront lines), not a mesh: expected a mesh" fur "$work/lines.obj"
-refused 3 "hair.npz: numpy arrays (.npz), not OBJ or PLY: expected a mesh" fur "$work/hair.npz"
+refused 3 "hair.npz: no faces: expected a mesh" fur "$work/hair.npz"
 refused 3 "none.obj" fur "$work/none.obj"
 refused 2 "an image is placed by texture coordinates, which the mesh lacks" fur "$work/part.obj" --density "$work/none.png"
 refused 3 "--density: " fur assets/ball.obj --density "$work/none.png"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Hair of tractrix-gen's generated kinds, and its random numbers.
 #include "base/random.h"
+#include "formats/strands_read.h"
 #include "gen/strands_make.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Meshes from Wavefront and PLY files, and meshes made by the program.
+#include "formats/mesh_read.h"
+#include "formats/obj.h"
 #include "mesh/mesh.h"
-#include "mesh/mesh_read.h"
-#include "mesh/obj.h"
 #include "mesh/scalp.h"
 #include "support/temporary.h"
 
@@ -124,6 +124,23 @@ static void all_forms_of_ply_give_the_same_square(void **state)
         }
         mesh_destroy(&mesh);
     }
+}
+
+// A strip of two triangles, and one of one: every other triangle is turned round.
+static void strips_of_ply_are_triangles(void **state)
+{
+    Mesh mesh;
+    static const uint32_t wanted[3][3] = {{0, 1, 2}, {2, 1, 3}, {0, 2, 3}};
+    temporary_write(state, "m.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                    "property float z\nelement tristrips 1\n"
+                    "property list int int vertex_indices\nend_header\n"
+                    "0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 2 3\n",
+                    0644);
+    assert_int_equal(mesh_read(&mesh, temporary_path(state, "m.ply"), 1, false, NULL), RESULT_OK);
+    assert_int_equal(mesh.triangle_count, 3);
+    assert_memory_equal(mesh.triangle, wanted, sizeof wanted);
+    mesh_destroy(&mesh);
 }
 
 static void malformed_ply_is_refused_with_its_line(void **state)
@@ -328,6 +345,7 @@ int main(void)
         TEST(z_up_turns_positions_and_normals),
         TEST(texture_coordinates_belong_to_corners),
         TEST(all_forms_of_ply_give_the_same_square),
+        TEST(strips_of_ply_are_triangles),
         TEST(malformed_ply_is_refused_with_its_line),
         TEST(other_files_are_refused_with_what_makes_a_mesh_of_them),
         TEST(malformed_files_are_refused_with_their_line),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The exact image against areas and opacities computed by hand, and the errors of the rasterisers
 // against the exact image.
+#include "formats/strands_read.h"
 #include "reference/image_reference.h"
-#include "strands/strands_read.h"
 #include "support/plain.h"
 #include "support/studio.h"
 

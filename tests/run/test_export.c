@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Exported hair files: the drawn positions, bit for bit, in the order of the input.
+#include "formats/strands_read.h"
 #include "run/export.h"
-#include "strands/strands_read.h"
 #include "support/simulation_fixture.h"
 #include "support/temporary.h"
 

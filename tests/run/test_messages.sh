@@ -32,7 +32,7 @@ line 2 "--scale: got '-1e30', expected a number from 1e-9 to 1e9" convert fur.tf
 line 2 "--count: got '-1e30', expected a whole number from 1 to 10000000" gen --count -1e30 -o g.tfx
 line 2 "--pixel-tolerance: got '-1e30', expected a number from 0 to 255" compare --pixel-tolerance -1e30 a b
 line 2 "--rates: got '0', expected up to 8 numbers from 1 to 1000000 with commas between them" bench speed --rates 0
-scene '"fps": -1e30' "fps: got '-1e+30', expected a number from 1 to 10000 (1/s) (nearest: 1)"
+scene '"fps": -1e30' "fps: got '-1e+30', expected a number from 0.001 to 10000 (1/s), or a fraction, 24000/1001 (nearest: 0.001)"
 scene '"head": {"keys": [{"time": -1e30, "translate": [0, 0, 0]}]}' "head.keys[0].time: got -1e30, expected seconds from -1000000000 to 1000000000 (nearest: -1000000000)"
 scene '"colliders": [{"sphere": [0, 0, 0, -1]}]' "colliders[0]: sphere: got the radius -1, expected a number from 0 to 1000000"
 

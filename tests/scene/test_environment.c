@@ -242,7 +242,7 @@ static void other_files_are_refused(void **state)
     const struct {
         const char *path, *says;
     } files[] = {{square, "1 x 1 px"},
-                 {"docs/fur.png", ".exr or .pfm"},
+                 {"docs/fur.png", ".exr, .hdr or .pfm"},
                  {"assets/none.exr", "assets/none.exr"},
                  {"assets/demo.json", "assets/demo.json"}};
     for (size_t i = 0; i < sizeof files / sizeof *files; ++i) {

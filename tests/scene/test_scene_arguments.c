@@ -32,12 +32,12 @@ static void assert_prints(Scene *scene, const ParamInfo *info, const char *expec
 static const char *sample(const ParamInfo *info, char text[64])
 {
     static const char *const TEXTS[] = {
-        [PARAM_BOOL] = "true",         [PARAM_VEC3] = "1,2,3",
-        [PARAM_COLOR] = "#010203",     [PARAM_BACKGROUND] = "#010203",
-        [PARAM_AUTO_VEC3] = "1,2,3",   [PARAM_AUTO_COLOR] = "#010203",
-        [PARAM_UNIT] = "in",           [PARAM_SIZE] = "32x24",
-        [PARAM_PART] = "2/3",          [PARAM_TEXT] = "word",
-        [PARAM_PATH] = "/some/where/",
+        [PARAM_BOOL] = "true",       [PARAM_VEC3] = "1,2,3",
+        [PARAM_COLOR] = "#010203",   [PARAM_BACKGROUND] = "#010203",
+        [PARAM_AUTO_VEC3] = "1,2,3", [PARAM_AUTO_COLOR] = "#010203",
+        [PARAM_UNIT] = "in",         [PARAM_SIZE] = "32x24",
+        [PARAM_PART] = "2/3",        [PARAM_RATE] = "24000/1001",
+        [PARAM_TEXT] = "word",       [PARAM_PATH] = "/some/where/",
     };
     bool whole =
         info->kind == PARAM_INT || info->kind == PARAM_UINT || info->kind == PARAM_AUTO_INT;
@@ -413,7 +413,7 @@ static void wrong_command_lines_are_refused_with_the_nearest_name(void **state)
         {"a.tfx -o", "-o: no value: expected PATH"},
         {"a.tfx --fps", "--fps: no value: expected X"},
         {"a.tfx --output --fps 30", "--output: no value: expected PATH"},
-        {"a.tfx -o x/ --fps 0", "--fps: got '0', expected a number from 1 to 10000 (1/s)"},
+        {"a.tfx -o x/ --fps 0", "--fps: got '0', expected a number from 0.001 to 10000 (1/s)"},
         {"a.tfx -o x/ --opacity nan", "--opacity: got 'nan'"},
         {"a.tfx -o x/ --up w", "expected auto, y or z"},
         {"a.tfx -o x/ --backend elg", "(nearest: egl)"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Distance fields against exact distances.
-#include "mesh/mesh_read.h"
+#include "formats/mesh_read.h"
 #include "mesh/scalp.h"
 #include "support/hair_fixture.h"
 #include "support/shapes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Invariants of every solver. Tests of single solvers are in test_solver_<name>.c, energy in
 // test_solvers_energy.c, convergence in test_solvers_convergent.c.
-#include "strands/strands_read.h"
+#include "formats/strands_read.h"
 #include "support/every_solver.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Changes of strands, and their statistics.
 #include "convert/figures.h"
+#include "formats/strands_read.h"
 #include "gen/strands_make.h"
 #include "strands/strands.h"
 #include "strands/strands_edit.h"
-#include "strands/strands_read.h"
 #include "strands/strands_resample.h"
 #include "support/temporary.h"
 

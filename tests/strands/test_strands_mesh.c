@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Hair on a mesh: fitting hair to it, moving roots onto it, pushing hair out of it, and depths
 // inside it.
-#include "mesh/mesh_read.h"
+#include "formats/mesh_read.h"
+#include "formats/strands_read.h"
 #include "mesh/scalp.h"
 #include "strands/strands_mesh.h"
-#include "strands/strands_read.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,7 +3,7 @@
 // after it), so that a sanitizer sees every read beyond it. The files' name is FILE.
 #pragma once
 
-#include "strands/strands_read.h"
+#include "formats/strands_read.h"
 
 extern const StrandsReadOptions METRES; // the unit is a metre
 
