@@ -119,7 +119,7 @@ LANE_FLAGS := $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trappin
 # Lanes: without these flags, selects and square roots are not vectorised, because they might trap or set errno. Loops
 # of 16 lanes must not be unrolled before they are vectorised (gcc unrolls loops of up to 16 turns). The results have
 # the same bits.
-$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS)
+$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o $(OUT)/image/convolve.o $(OUT)/image/flip.o $(OUT)/image/ssim.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS)
 $(OUT)/mesh/head.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS:15=6) # loops of 8 points
 $(LANE_PIXELS): C_FLAGS += $(LANE_FLAGS) -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource

@@ -35,5 +35,5 @@ bool level_counts(Level level, const char *platform, bool any);
 // The level where a new golden is stored: for all platforms by CPUs, in the class by GPUs.
 Level level_of_new(const char *platform);
 
-// The default limits: equal images; 2 levels, 0.5 %; 8 levels, 2 %.
+// The default limits: equal images for the platform, else those of the table in levels.c.
 void level_set_limits(CompareLimits *limits, Level level);

@@ -81,7 +81,7 @@ static Result compare(TractrixFigures *figures, float *map, const TractrixImage 
                             .ssim = found.ssim,
                             .flip = found.flip,
                             .flip_most = found.flip_most,
-                            .same = found.same};
+                            .same = found.within};
     library_give(figures, &own);
     return RESULT_OK;
 }

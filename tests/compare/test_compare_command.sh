@@ -13,7 +13,9 @@ run 0 $other $other
 run 0 -q $a $a; silent out; silent err
 
 claim "different images give status 1"
-run 1 $a $b; says "different: RMSE"; says "1 different; largest FLIP"; silent err
+run 1 $a $b; says "different: RMSE"; says "1 different; largest RMSE"; silent err
+if grep -qE "SSIM|FLIP" "$work/out"; then bad "figures that no limit needs"; else good; fi
+run 1 $a $b --all-metrics; says "SSIM 0."; says "1 different; largest FLIP"
 run 1 -q $a $b; silent out; silent err
 run 1 $a $other; says "size mismatch: 160 x 120 and 128 x 128 pixels"
 
