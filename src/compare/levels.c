@@ -30,6 +30,16 @@ bool level_is_platform(const char *name)
            strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789._-") == strlen(name);
 }
 
+bool level_has_folder(const char *name)
+{
+    size_t length = strcspn(name, "-");
+    for (int i = 0; i < CLASS_COUNT; ++i) {
+        bool begins = strlen(CLASSES[i][0]) == length && strncmp(name, CLASSES[i][0], length) == 0;
+        if ((begins && name[length] == '-') || strcmp(name, CLASSES[i][1]) == 0) return true;
+    }
+    return false;
+}
+
 const char *level_folder(Level level, const char *platform)
 {
     if (level == LEVEL_PLATFORM) return platform;

@@ -25,6 +25,10 @@ const char *level_class(const char *platform);
 // Whether tractrix-render --platform may print this name: neither a path nor a class.
 bool level_is_platform(const char *name);
 
+// Whether a subfolder of GOLDENS with this name has the goldens of a class or of a platform: its
+// name is that of a class, or begins like a platform's.
+bool level_has_folder(const char *name);
+
 // The folder's name in GOLDENS; "": GOLDENS itself.
 const char *level_folder(Level level, const char *platform);
 

@@ -96,7 +96,9 @@ static const Option OPTIONS[] = {
     {"commands", 0, OPTION_STRING, AT(commands), "FILE", 0, 0,
      "file with lines NAME: COMMAND, the commands that rendered the images B, for the reports"},
     {"only", 0, OPTION_STRING, AT(only), "NAME", 0, 0,
-     "compare only the image of this name; %d or %04d in the name stands for any number"},
+     "compare only the image of this name, such as walk/0001.png; %d or %04d in the name stands "
+     "for "
+     "any number"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
      "accept B: copy it over A where the two differ or A is missing"},
     {"shrink", 0, OPTION_WHOLE, AT(shrink), "PX", 1, 16384,
@@ -108,8 +110,8 @@ static const Option OPTIONS[] = {
 
 static const char *const NOTES[] = {
     "A and B are two images (PNG of 8 or 16 bits, PFM, EXR), two folders, whose .png, .pfm and "
-    ".exr files are "
-    "paired by name, or two patterns with %d or %04d, paired by number. Images of different sizes "
+    ".exr files are paired by name, also in subfolders, or two patterns with %d or %04d, paired by "
+    "number. Images of different sizes "
     "and images without a partner count as different.",
     "Results: `same` has no visible difference; `within limits` differs, but passes; `different` "
     "fails.",
