@@ -64,13 +64,19 @@ class View(Sized):
 
 class Limits(Sized):
     _fields_ = [("size", c_size_t), ("pixel_tolerance", c_double), ("max_failing_percent", c_double),
-                ("max_flip", c_double), ("pixels_per_degree", c_double)]
+                ("max_flip", c_double), ("pixels_per_degree", c_double), ("max_difference", c_double),
+                ("max_local_difference", c_double)]
 
 
 class Figures(Sized):
     _fields_ = [("size", c_size_t), ("compared", c_uint64), ("failing", c_uint64), ("largest", c_double),
                 ("at", c_int * 2), ("rmse", c_double), ("psnr", c_double), ("ssim", c_double), ("flip", c_double),
-                ("flip_most", c_double), ("same", c_bool)]
+                ("flip_most", c_double), ("same", c_bool), ("within", c_bool), ("equal", c_bool), ("local_at", c_int * 2),
+                ("local_difference", c_double)]
+
+
+class WriteOptions(Sized):
+    _fields_ = [("size", c_size_t), ("half", c_bool)]
 
 
 HANDLE = c_void_p
@@ -109,7 +115,7 @@ FUNCTIONS = {
     "tractrix_picture_read": (c_int, [_NEW, c_char_p, _ERROR]),
     "tractrix_picture_image": (POINTER(Image), [HANDLE]),
     "tractrix_picture_destroy": _DESTROY,
-    "tractrix_image_write": (c_int, [POINTER(Image), c_char_p, _ERROR]),
+    "tractrix_image_write_with": (c_int, [POINTER(Image), c_char_p, POINTER(WriteOptions), _ERROR]),
     "tractrix_compare": (c_int, [POINTER(Figures), _FLOATS, POINTER(Image), POINTER(Image), POINTER(Image),
                                  POINTER(Limits), _ERROR]),
 }

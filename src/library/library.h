@@ -62,8 +62,8 @@ Result library_take_image(TractrixImage *to, const TractrixImage *image, const c
 // `image` has no alpha, the pixels become opaque.
 void library_put_image(const TractrixImage *to, const Image *image);
 // Makes an image with the caller's pixels, without an alpha channel if all pixels are opaque.
-// RESULT_FAILED when memory is short.
-Result library_copy_image(Image *to, const TractrixImage *from, Error *error);
+// RESULT_BAD_INPUT, naming `name`, if a float is not finite; RESULT_FAILED when memory is short.
+Result library_copy_image(Image *to, const TractrixImage *from, const char *name, Error *error);
 
 // --- Devices.
 

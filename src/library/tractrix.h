@@ -344,14 +344,25 @@ void tractrix_picture_destroy(TractrixPicture *picture);
 // Writes an image file. The suffix of `path` decides the file format: .png for TRACTRIX_RGBA8 and
 // TRACTRIX_RGBA16; .jpg or .jpeg for TRACTRIX_RGBA8 with all pixels opaque; .exr or .pfm for
 // TRACTRIX_RGBA32F. If all pixels are opaque, the file has no alpha channel. A .pfm file never has
-// one: alpha is dropped. TRACTRIX_USAGE for another suffix or a format that does not suit the
-// suffix.
+// one: alpha is dropped. Floats are written with 32 bits: tractrix_picture_read gives them back.
+// TRACTRIX_USAGE for another suffix or a format that does not suit the suffix; TRACTRIX_BAD_INPUT
+// if a float is not finite.
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error);
 
-// Limits within which two images count as the same, as the options of tractrix-compare. If all
-// members but `size` are 0, only equal images are the same. TRACTRIX_USAGE if a limit is out of
-// range or if neither pixels nor FLIP count.
+typedef struct TractrixWriteOptions {
+    size_t size;
+    bool half; // .exr: 16 bits a channel, with a precision of 1 / 2048
+} TractrixWriteOptions;
+
+// The same with options; NULL: none. TRACTRIX_USAGE if `half` does not suit the suffix or a value
+// is beyond 65,504.
+TractrixResult tractrix_image_write_with(const TractrixImage *image, const char *path,
+                                         const TractrixWriteOptions *options, TractrixError *error);
+
+// Limits within which two images pass, as the options of tractrix-compare. If all members but
+// `size` are 0, only equal images pass. TRACTRIX_USAGE if a limit is out of range or if there is
+// none.
 typedef struct TractrixLimits {
     size_t size;
     double pixel_tolerance; // a pixel fails if a channel differs by more than this, in levels of 0
@@ -359,6 +370,10 @@ typedef struct TractrixLimits {
     double max_failing_percent; // how many of the compared pixels may fail, 0 to 100 %
     double max_flip;            // largest allowed mean of FLIP, at most 1; 0 or less: no such limit
     double pixels_per_degree;   // viewing distance for FLIP, 1 to 1000; 0: the default, 67
+    double max_difference;      // largest allowed difference of a channel, at most 255 levels; 0 or
+                                // less: no such limit
+    double max_local_difference; // largest allowed mean difference of a channel over 16 x 16
+                                 // pixels, at most 255 levels; 0 or less: no such limit
 } TractrixLimits;
 
 typedef struct TractrixFigures { // docs/compare.md defines the figures
@@ -369,16 +384,20 @@ typedef struct TractrixFigures { // docs/compare.md defines the figures
     // `rmse` is in levels, `psnr` in dB; `flip` is the mean of FLIP and `flip_most` its largest
     // value, 0 to 1. Equal images: rmse 0, psnr INFINITY, ssim 1, flip and flip_most 0.
     double rmse, psnr, ssim, flip, flip_most;
-    bool same; // the images are the same within the limits
+    bool same;               // as `within`, by an older name
+    bool within;             // the images are within the limits
+    bool equal;              // there is no visible difference
+    int local_at[2];         // x, y of the window below: its top left pixel
+    double local_difference; // largest mean difference of a channel over 16 x 16 pixels, in levels
 } TractrixFigures;
 
 // Compares two images of the same size. Their formats may differ. `mask` is an image of the same
 // size: pixels where the mask is black are ignored, pixels where it is white (luma at least half)
 // or transparent are compared; NULL: all pixels are compared. `map` is an array [height][width]
 // that receives FLIP's error of each pixel, NaN for ignored pixels; NULL: not wanted. `limits`
-// NULL: only equal images are the same. If the images differ, the function still returns
-// TRACTRIX_OK; see figures->same. TRACTRIX_USAGE if the sizes differ, TRACTRIX_BAD_INPUT if the
-// mask is all black.
+// NULL: only equal images pass. If the images differ, the function still returns TRACTRIX_OK; see
+// figures->within. TRACTRIX_USAGE if the sizes differ, TRACTRIX_BAD_INPUT if the mask is all black
+// or a float of an image is not finite.
 TractrixResult tractrix_compare(TractrixFigures *figures, float *map, const TractrixImage *a,
                                 const TractrixImage *b, const TractrixImage *mask,
                                 const TractrixLimits *limits, TractrixError *error);
