@@ -65,8 +65,9 @@ static void lay_over(const Image *image, size_t i, float level, float rgb[3])
         for (int k = 0; k < 3; ++k) rgb[k] = (float)level_of_light((double)light[k] + behind);
         return;
     }
-    if (!has_alpha && image->kind == IMAGE_8) {
-        for (size_t k = 0; k < 3; ++k) rgb[k] = image->pixels[i + k];
+    bool bytes = image->kind == IMAGE_8, clear = bytes && has_alpha && image->pixels[i + 3] == 0;
+    if (clear || (bytes && (!has_alpha || image->pixels[i + 3] == 255))) {
+        for (size_t k = 0; k < 3; ++k) rgb[k] = clear ? level : image->pixels[i + k];
         return;
     }
     double alpha = has_alpha ? read_level(image, i + 3) / 255 : 1;

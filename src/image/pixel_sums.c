@@ -8,7 +8,7 @@
 #include <string.h>
 
 // A window has 2 x 2 cells.
-enum { CELL = SUMS_WINDOW / 2, ROWS = 8 * CELL };
+enum { CELL = SUMS_WINDOW / 2 };
 
 typedef struct Scan {
     PixelSums *sums;
@@ -36,7 +36,7 @@ static void add_pixel(Scan *scan, int x, int y, const double difference[3])
     double largest = 0, *cell = scan->row[1][x / CELL];
     for (int k = 0; k < 3; ++k) {
         sums->squares += difference[k] * difference[k];
-        largest = fmax(largest, fabs(difference[k]));
+        largest = fabs(difference[k]) > largest ? fabs(difference[k]) : largest;
         cell[k] += difference[k];
     }
     sums->failing += largest > scan->tolerance;
@@ -65,7 +65,7 @@ static void add_floats(Scan *scan, const float *a, const float *b, int y)
     if (memcmp(a, b, 3 * (size_t)scan->width * sizeof *a) == 0) return;
     for (int x = 0; x < scan->width; ++x, a += 3, b += 3) {
         double difference[3];
-        if (!counts(scan, x, y)) continue;
+        if (memcmp(a, b, 3 * sizeof *a) == 0 || !counts(scan, x, y)) continue;
         for (int k = 0; k < 3; ++k) difference[k] = (double)a[k] - (double)b[k];
         add_pixel(scan, x, y, difference);
     }
@@ -88,6 +88,15 @@ static void end_cells(Scan *scan, int y)
     memset(above, 0, (size_t)scan->cells * sizeof *above);
 }
 
+static bool are_equal(const Image *a, const Image *b, int y, int rows)
+{
+    size_t row = (size_t)a->width * (size_t)a->channels * image_channel_size(a->kind);
+    return a->kind == b->kind && a->channels == b->channels &&
+           memcmp(a->pixels + (size_t)y * row, b->pixels + (size_t)y * row, (size_t)rows * row) ==
+               0;
+}
+
+// Adds the rows of one row of cells.
 static Result add_rows(Scan *scan, const Image *a, const Image *b, float level, int y, int rows,
                        Error *error)
 {
@@ -96,6 +105,10 @@ static Result add_rows(Scan *scan, const Image *a, const Image *b, float level, 
     size_t row = 3 * (size_t)a->width;
     FloatImage p = {0}, q = {0};
     Result result = RESULT_OK;
+    if (are_equal(a, b, y, rows)) {
+        end_cells(scan, y);
+        return RESULT_OK;
+    }
     if (!bytes) {
         result = float_image_create_area(&p, a, NULL, level, area, error);
         THEN(result, float_image_create_area(&q, b, NULL, level, area, error));
@@ -106,8 +119,8 @@ static Result add_rows(Scan *scan, const Image *a, const Image *b, float level, 
                       y + i);
         else
             add_floats(scan, p.rgb + (size_t)i * row, q.rgb + (size_t)i * row, y + i);
-        if (i % CELL == CELL - 1 || i == rows - 1) end_cells(scan, y + i - i % CELL);
     }
+    end_cells(scan, y);
     float_image_destroy(&p);
     float_image_destroy(&q);
     return result;
@@ -120,9 +133,9 @@ Result pixel_sums_find(PixelSums *sums, const Image *a, const Image *b, const Ma
     *sums = (PixelSums){0};
     TRY(start(&scan, error));
     Result result = RESULT_OK;
-    for (int y = 0; y < a->height && result == RESULT_OK; y += ROWS)
+    for (int y = 0; y < a->height && result == RESULT_OK; y += CELL)
         result =
-            add_rows(&scan, a, b, level, y, a->height - y < ROWS ? a->height - y : ROWS, error);
+            add_rows(&scan, a, b, level, y, a->height - y < CELL ? a->height - y : CELL, error);
     free(scan.cell);
     return result;
 }
