@@ -7,7 +7,7 @@
 #pragma once
 
 #include "base/target.h"
-#include "run/cache.h"
+#include "run/cache_file.h"
 #include "strands/strands_read.h"
 
 #include <jansson.h>

@@ -90,6 +90,13 @@ else
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
 fi
 
+claim "programs that draw nothing need no library of OpenGL"
+for name in gen convert compare; do
+    if ! readelf -d "$root/usr/bin/tractrix-$name" >"$work/out" 2>"$work/err"; then skip "no readelf"
+    elif grep -qiE 'NEEDED.*(epoxy|EGL|GL)' "$work/out"; then bad "$name: $(grep -iE 'epoxy|GL' "$work/out")"
+    else good; fi
+done
+
 claim "ldconfig runs where the folder is one of the system's, and nowhere else"
 mkdir "$work/fake"
 printf '#!/bin/sh\necho "%s/home/lib: (from a file)"\n[ "$1" = -N ] || echo ran >"%s/ran"\n' "$work" "$work" >"$work/fake/ldconfig"
