@@ -85,11 +85,11 @@ TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDevic
 
 // Makes a device from your own OpenGL context: version 4.3 or newer, by EGL or GLX. The context
 // must be current on the calling thread, now and in every later call that uses this device or
-// anything created from it, including the destroy functions. OpenGL must be in its default state at
-// each call. After the call it is in its default state again, except for the following, which you
-// must set again: viewport, scissor box, and the bindings of programs, vertex arrays, framebuffers,
-// buffers, textures, samplers, images and uniform blocks. TRACTRIX_NO_GL if no context is current
-// or it lacks a required feature.
+// anything created from it, including the destroy functions. Each of these calls saves the state of
+// OpenGL 4.3 core, sets what it needs, and restores your state. It discards pending errors of
+// glGetError. A call fails with TRACTRIX_USAGE while a query of samples, primitives or time is
+// active, or transform feedback that is not paused; and no conditional rendering may be active.
+// TRACTRIX_NO_GL if no context is current or it lacks a required feature.
 TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error);
 void tractrix_device_destroy(TractrixDevice *device);
 
