@@ -102,7 +102,7 @@ FUNCTIONS = {
     "tractrix_simulation_create": (c_int, [_NEW, HANDLE, HANDLE, _ERROR]),
     "tractrix_simulation_destroy": _DESTROY,
     "tractrix_simulation_messages": (c_char_p, [HANDLE]),
-    "tractrix_simulation_set": (c_int, [HANDLE, c_char_p, c_char_p, _ERROR]),
+    "tractrix_simulation_set_section": (c_int, [HANDLE, c_int, c_char_p, c_char_p, _ERROR]),
     "tractrix_simulation_advance": (c_int, [HANDLE, POINTER(Pose), _ERROR]),
     "tractrix_simulation_advance_mesh": (c_int, [HANDLE, _FLOATS, c_uint32, _ERROR]),
     "tractrix_simulation_place_body": (c_int, [HANDLE, c_uint32, POINTER(Pose), _ERROR]),

@@ -91,11 +91,13 @@ class Simulation:
         with lock:
             return library().tractrix_simulation_time(self._pointer)
 
-    def set(self, **parameters: Unpack[Parameters]) -> None:
-        """Changes live parameters (`tractrix.parameters()[name].live`). They take effect at the next step or image."""
+    def set(self, *, section: int = -1, **parameters: Unpack[Parameters]) -> None:
+        """Changes live parameters (`tractrix.parameters()[name].live`). They take effect at the next step or image.
+        `section`: the section of hair, from 0, for parameters of sections; -1: all sections. An automatic exposure stays
+        as measured until `exposure` is set."""
         with lock:
             for name, value in parameters.items():
-                call("tractrix_simulation_set", self._pointer, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
+                call("tractrix_simulation_set_section", self._pointer, section, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
 
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
         """Simulates one frame, which is speed / fps seconds of the scene (parameters `fps` and `speed`; `speed` is 1 by

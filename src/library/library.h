@@ -102,6 +102,9 @@ Result library_refuse_name(const char *name, Error *error);
 // Whether tractrix_simulation_set may change the parameter.
 bool library_is_live(const ParamInfo *info);
 
+// Whether it is also one of drawing alone.
+bool library_is_look(const ParamInfo *info);
+
 // --- Scenes.
 
 // Hair that a caller has passed as an array.
@@ -166,7 +169,9 @@ struct TractrixSimulation {
     LibraryMap *maps;                    // [2 * sections]: guides and followers of each section
     DrivenHead driven[SCENE_MAX_BODIES]; // heads that the caller moves
     LibraryPlace next[SCENE_MAX_BODIES];
-    uint64_t aims; // how often a camera parameter was changed
+    uint64_t aims;      // how often a camera parameter was changed
+    uint64_t looks;     // how often a parameter of drawing alone was changed
+    uint64_t exposures; // how often the exposure was
 };
 
 // Free the simulation's maps: library_end_copies frees the GPU's objects and needs the device's

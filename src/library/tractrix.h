@@ -226,11 +226,18 @@ void tractrix_simulation_destroy(TractrixSimulation *simulation);
 const char *tractrix_simulation_messages(const TractrixSimulation *simulation);
 
 // Changes a parameter of a running simulation, from the next step or image on. Only parameters with
-// `live` (TractrixParameter) can be changed: those of gravity, wind, camera, sky and ground. The
-// value replaces the keyframes of the parameter, if it has any. TRACTRIX_USAGE if the parameter is
-// not live or the value is wrong.
+// `live` (TractrixParameter) can be changed: those of gravity, wind and camera, and those of
+// drawing alone: colours, shading, light, shadows, exposure, background, samples, level of detail,
+// `aov`. Renderers draw the next image as a new renderer would, but keep an automatic exposure
+// until "exposure" is set. The value replaces the keyframes of the parameter, if it has any.
+// TRACTRIX_USAGE if the parameter is not live or the value is wrong.
 TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const char *name,
                                        const char *text, TractrixError *error);
+
+// The same for one section of hair, from 0; -1: all sections.
+TractrixResult tractrix_simulation_set_section(TractrixSimulation *simulation, int section,
+                                               const char *name, const char *text,
+                                               TractrixError *error);
 
 // Simulates one frame: the video advances by 1 / fps seconds, the scene's time by speed / fps
 // seconds (parameters `fps` and `speed`, which is 1 by default). `head` is the pose of the head,

@@ -17,7 +17,12 @@ struct TractrixRenderer {
     Framing framing;
     Images images;
     Image image;
-    uint64_t aims; // the simulation's `aims` when the camera was aimed
+    ImageKind kind;
+    bool measured;  // `exposure` is that of exposure_find
+    float exposure; // EV
+    // The simulation's counters when the camera was aimed, the images were made, and the exposure
+    // was found.
+    uint64_t aims, looks, exposures;
 };
 
 static const ImageKind KINDS[] = {
@@ -43,29 +48,46 @@ static Result aim(TractrixRenderer *renderer, Error *error)
 
 // --- Lifetime.
 
-typedef struct Opening {
-    TractrixRenderer *renderer;
-    ImageKind kind;
-} Opening;
+// An automatic exposure is measured once, and again only when it is set anew.
+static Result expose(TractrixRenderer *renderer, Error *error)
+{
+    TractrixSimulation *simulation = renderer->simulation;
+    const RunParams *run = &renderer->scene.run;
+    bool wanted = exposure_is_wanted(run, renderer->kind);
+    if (renderer->exposures != simulation->exposures) renderer->measured = false;
+    if (wanted && !renderer->measured)
+        TRY(exposure_find(&renderer->exposure, &renderer->scene, &simulation->assets,
+                          &renderer->framing, &simulation->device->gpu, error));
+    renderer->measured |= wanted;
+    renderer->exposures = simulation->exposures;
+    return RESULT_OK;
+}
+
+// Makes the images, also anew after parameters of drawing have changed.
+static Result open_images(TractrixRenderer *renderer, Error *error)
+{
+    TractrixSimulation *simulation = renderer->simulation;
+    const RunParams *run = &renderer->scene.run;
+    images_destroy(&renderer->images);
+    image_destroy(&renderer->image);
+    TRY(expose(renderer, error));
+    TRY(images_create(&renderer->images, &renderer->scene, &simulation->assets,
+                      &simulation->simulation, &renderer->framing,
+                      &(ImagesForm){.kind = renderer->kind}, &simulation->device->gpu,
+                      &simulation->timer, error));
+    renderer->images.renderer.options.exposure =
+        exposure_is_wanted(run, renderer->kind) ? renderer->exposure : run->exposure.value;
+    TRY(image_create_kind(&renderer->image, run->size[0], run->size[1],
+                          renderer_channels(&renderer->images.renderer), renderer->kind, error));
+    renderer->looks = simulation->looks;
+    return RESULT_OK;
+}
 
 static Result open_renderer(void *data, Error *error)
 {
-    Opening *opening = data;
-    TractrixRenderer *renderer = opening->renderer;
-    TractrixSimulation *simulation = renderer->simulation;
-    const RunParams *run = &renderer->scene.run;
-    const Gpu *gpu = &simulation->device->gpu;
-    float exposure = run->exposure.value;
+    TractrixRenderer *renderer = data;
     TRY(aim(renderer, error));
-    if (exposure_is_wanted(run, opening->kind))
-        TRY(exposure_find(&exposure, &renderer->scene, &simulation->assets, &renderer->framing, gpu,
-                          error));
-    TRY(images_create(&renderer->images, &renderer->scene, &simulation->assets,
-                      &simulation->simulation, &renderer->framing,
-                      &(ImagesForm){.kind = opening->kind}, gpu, &simulation->timer, error));
-    renderer->images.renderer.options.exposure = exposure;
-    return image_create_kind(&renderer->image, run->size[0], run->size[1],
-                             renderer_channels(&renderer->images.renderer), opening->kind, error);
+    return open_images(renderer, error);
 }
 
 static Result close_renderer(void *data, Error *error)
@@ -101,9 +123,9 @@ static Result create(TractrixRenderer **renderer, TractrixSimulation *simulation
     if (!made) return error_set(error, RESULT_FAILED, "no memory for a renderer");
     library_keep_simulation(simulation);
     made->simulation = simulation;
+    made->kind = KINDS[format];
     take_scene(made, width, height);
-    Opening opening = {made, KINDS[format]};
-    return library_on_device(simulation->device, open_renderer, &opening, error);
+    return library_on_device(simulation->device, open_renderer, made, error);
 }
 
 TractrixResult tractrix_renderer_create(TractrixRenderer **renderer, TractrixSimulation *simulation,
@@ -178,11 +200,13 @@ static Result draw(void *data, Error *error)
 {
     DrawCall *call = data;
     TractrixRenderer *renderer = call->renderer;
-    const int *size = renderer->scene.run.size;
+    const int size[] = {renderer->scene.run.size[0], renderer->scene.run.size[1]};
     int frame = renderer->simulation->simulation.frame;
     View view;
     take_scene(renderer, size[0], size[1]);
     if (renderer->aims != renderer->simulation->aims) TRY(aim(renderer, error));
+    if (renderer->looks != renderer->simulation->looks || !renderer->image.pixels)
+        TRY(open_images(renderer, error));
     if (call->view)
         TRY(take_view(&view, call->view, error));
     else
@@ -199,11 +223,11 @@ TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *v
     if (!renderer) return library_refuse(error, "renderer: got NULL");
     Result result = library_take_image(&to, image, "image", &why);
     if (result == RESULT_OK &&
-        (to.width != renderer->image.width || to.height != renderer->image.height ||
-         KINDS[to.format] != renderer->image.kind))
+        (to.width != renderer->scene.run.size[0] || to.height != renderer->scene.run.size[1] ||
+         KINDS[to.format] != renderer->kind))
         result = error_set(&why, RESULT_USAGE,
                            "image: expected the renderer's size, %dx%d, and its format",
-                           renderer->image.width, renderer->image.height);
+                           renderer->scene.run.size[0], renderer->scene.run.size[1]);
     DrawCall call = {renderer, view};
     THEN(result, library_on_device(renderer->simulation->device, draw, &call, &why));
     if (result == RESULT_OK) library_put_image(&to, &renderer->image);

@@ -161,18 +161,36 @@ double tractrix_simulation_time(const TractrixSimulation *simulation)
 
 // --- Stepping.
 
-static Result set(TractrixSimulation *simulation, const char *name, const char *text, Error *error)
+// A section whose parameters change over time has them evaluated in `now`.
+static Result set_now(TractrixSimulation *simulation, int section, const ParamInfo *info,
+                      const char *text, Error *error)
+{
+    for (uint32_t i = 0; info->scope == SCOPE_SECTION && i < simulation->scene.section_count; ++i)
+        if (section < 0 || (uint32_t)section == i)
+            TRY(params_parse(info, &simulation->simulation.sections[i].now, text, error));
+    return RESULT_OK;
+}
+
+static Result set(TractrixSimulation *simulation, int section, const char *name, const char *text,
+                  Error *error)
 {
     const ParamInfo *info = library_parameter(name);
     if (!info) return library_refuse_name(name, error);
     if (!library_is_live(info))
         return error_set(error, RESULT_USAGE,
                          "%s: cannot change during a simulation: expected a live parameter, such "
-                         "as wind or eye (tractrix_parameter: live)",
+                         "as wind or color (tractrix_parameter: live)",
                          name);
-    Result result = scene_set(&simulation->scene, -1, info, text, error);
+    int count = (int)simulation->scene.section_count;
+    if (section < -1 || section >= (info->scope == SCOPE_SECTION ? count : 0))
+        return error_set(error, RESULT_USAGE, "section: got %d for %s, expected -1%s", section,
+                         info->name, info->scope == SCOPE_SECTION ? " or a section" : "");
+    Result result = scene_set(&simulation->scene, section, info, text, error);
+    THEN(result, set_now(simulation, section, info, text, error));
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", info->name);
     simulation->aims += info->group == GROUP_CAMERA;
+    simulation->looks += library_is_look(info);
+    simulation->exposures += strcmp(info->name, "exposure") == 0;
     return RESULT_OK;
 }
 
@@ -183,7 +201,18 @@ TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const cha
     Error why = {{0}};
     if (!simulation || !name || !text)
         return library_refuse(error, "simulation, name or text: got NULL");
-    return library_end(set(simulation, name, text, &why), &why, error);
+    return library_end(set(simulation, -1, name, text, &why), &why, error);
+}
+
+TractrixResult tractrix_simulation_set_section(TractrixSimulation *simulation, int section,
+                                               const char *name, const char *text,
+                                               TractrixError *error)
+{
+    LIBRARY_CALL;
+    Error why = {{0}};
+    if (!simulation || !name || !text)
+        return library_refuse(error, "simulation, name or text: got NULL");
+    return library_end(set(simulation, section, name, text, &why), &why, error);
 }
 
 // Moves a body to where the caller wants it at the time `after`. If the caller says nothing, it

@@ -332,6 +332,57 @@ static void takes_live_parameters(void **state)
     tractrix_simulation_destroy(blown);
 }
 
+// Parameters of drawing: a kept renderer draws what a new simulation with the parameter draws.
+static void is_lit_and_coloured_anew(void **state)
+{
+    // What is changed, and a parameter that both simulations begin with.
+    static const char *const CHANGES[][4] = {
+        {"color", "#c02040", "exposure", "0"},
+        {"tip_length", "0.6", "exposure", "0"},
+        {"tip_color", "#20c040", "tip_length", "0.5"},
+        {"opacity", "0.5", "exposure", "0"},
+        {"diffuse", "0.8", "exposure", "0"},
+        {"shading", "marschner", "exposure", "0"},
+        {"roughness", "9", "shading", "marschner"},
+        {"melanin", "0.9", "shading", "marschner"},
+        {"shadow", "dom", "exposure", "0"},
+        {"exposure", "1", "samples", "2"},
+        {"samples", "2", "exposure", "0"},
+        {"tone_map", "filmic", "exposure", "0"},
+        {"background", "transparent", "exposure", "0"},
+        {"aov", "depth", "exposure", "0"},
+    };
+    static uint8_t kept[FIXTURE_PIXELS][4], made[FIXTURE_PIXELS][4], last[FIXTURE_PIXELS][4];
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image, .width = 48, .height = 32, .pixels = kept};
+    (void)state;
+    for (size_t i = 0; i < sizeof CHANGES / sizeof *CHANGES; ++i) {
+        const char *const *change = CHANGES[i];
+        const char *const before[] = {change[2], change[3], NULL};
+        const char *const after[] = {change[2], change[3], change[0], change[1], NULL};
+        TractrixSimulation *simulation = simulate(device, before), *other = simulate(device, after);
+        WELL(tractrix_simulation_advance(simulation, NULL, &error));
+        WELL(tractrix_simulation_advance(other, NULL, &error));
+        WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        memcpy(last, kept, sizeof last);
+        WELL(tractrix_simulation_set_section(simulation, -1, change[0], change[1], &error));
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        library_draw(other, NULL, made);
+        if (memcmp(kept, made, sizeof kept) != 0) fail_msg("%s", change[0]);
+        if (memcmp(kept, last, sizeof kept) == 0) fail_msg("%s: no effect", change[0]);
+        tractrix_renderer_destroy(renderer);
+        tractrix_simulation_destroy(simulation);
+        tractrix_simulation_destroy(other);
+    }
+    TractrixSimulation *simulation = simulate(device, NONE);
+    library_refused(tractrix_simulation_set_section(simulation, 1, "color", "black", &error),
+                    TRACTRIX_USAGE, "section: got 1 for color");
+    library_refused(tractrix_simulation_set_section(simulation, 0, "exposure", "1", &error),
+                    TRACTRIX_USAGE, "section: got 0 for exposure, expected -1");
+    tractrix_simulation_destroy(simulation);
+}
+
 // --- Images.
 
 static int count_hair(uint8_t pixels[FIXTURE_PIXELS][4])
@@ -828,6 +879,7 @@ int main(void)
         cmocka_unit_test(moves_a_mesh_only_by_whole_steps),
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
+        cmocka_unit_test(is_lit_and_coloured_anew),
         cmocka_unit_test(draws_by_views_and_formats),
         cmocka_unit_test(keeps_pixels_when_threads_change),
         cmocka_unit_test(refuses_what_has_no_effect),
