@@ -79,6 +79,11 @@ class WriteOptions(Sized):
     _fields_ = [("size", c_size_t), ("half", c_bool)]
 
 
+class Layers(Sized):
+    _fields_ = [("size", c_size_t), ("coverage", POINTER(c_float)), ("depth", POINTER(c_float)), ("tangent", POINTER(c_float)),
+                ("strand", POINTER(c_uint32))]
+
+
 HANDLE = c_void_p
 _NEW, _ERROR, _FLOATS = POINTER(HANDLE), POINTER(Error), POINTER(c_float)
 _DESTROY = (None, [HANDLE])
@@ -111,7 +116,7 @@ FUNCTIONS = {
     "tractrix_simulation_map": (c_int, [HANDLE, c_int, c_int, POINTER(Positions), _ERROR]),
     "tractrix_renderer_create": (c_int, [_NEW, HANDLE, c_int, c_int, c_int, _ERROR]),
     "tractrix_renderer_destroy": _DESTROY,
-    "tractrix_render": (c_int, [HANDLE, POINTER(View), POINTER(Image), _ERROR]),
+    "tractrix_render_layers": (c_int, [HANDLE, POINTER(View), POINTER(Image), POINTER(Layers), _ERROR]),
     "tractrix_picture_read": (c_int, [_NEW, c_char_p, _ERROR]),
     "tractrix_picture_image": (POINTER(Image), [HANDLE]),
     "tractrix_picture_destroy": _DESTROY,

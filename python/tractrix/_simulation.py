@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Literal, Union
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Literal, NamedTuple, Union
 
 import numpy as np
 
 from . import _arrays
-from ._declarations import FOLLOWERS, GUIDES, Positions, View
+from ._declarations import FOLLOWERS, GUIDES, Layers, Positions, View
 from ._device import device
 from ._error import FAILED, error_of, usage
 from ._image import FORMATS, image_of
@@ -34,6 +34,17 @@ def part_of(name: str) -> int:
     if name not in PARTS:
         raise usage(f"part: got {name!r}: expected guides or followers")
     return PARTS[name]
+
+
+class Layered(NamedTuple):
+    """An image and data of its pixels: `coverage`, the share that hair covers; `depth` of the strand in front, m from the eye;
+    its `tangent` in the world, (H, W, 3); its number `strand`, as in EXR files of tractrix-render. Without a strand they are 0."""
+
+    image: np.ndarray
+    coverage: np.ndarray
+    depth: np.ndarray
+    tangent: np.ndarray
+    strand: np.ndarray
 
 
 class Simulation:
@@ -155,6 +166,19 @@ class Simulation:
         float32 is linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for
         column vectors; default: the scene's camera. Automatic exposure is measured at the first image, and again
         whenever `size` or `dtype` differs from that of the previous image; with float32 it is 0."""
+        return self._render(size, dtype, view, None)
+
+    def render_layers(self, size: tuple[int, int] = (960, 960), *, dtype: Any = np.uint8,
+                      view: tuple[np.ndarray, np.ndarray] | None = None) -> Layered:
+        """The image that `render` gives, and data of each of its pixels: coverage, depth, tangent and strand."""
+        width, height = (int(length) for length in _arrays.numbers("size", size, (2,), np.int64))
+        shape = max(height, 0), max(width, 0)
+        arrays = [np.empty(shape, np.float32), np.empty(shape, np.float32), np.empty((*shape, 3), np.float32), np.empty(shape, np.uint32)]
+        coverage, depth, tangent = (_arrays.pointer(array, ctypes.c_float) for array in arrays[:3])
+        layers = Layers(coverage=coverage, depth=depth, tangent=tangent, strand=_arrays.pointer(arrays[3], ctypes.c_uint32))
+        return Layered(self._render(size, dtype, view, layers), *arrays)
+
+    def _render(self, size: tuple[int, int], dtype: Any, view: tuple[np.ndarray, np.ndarray] | None, layers: Layers | None) -> np.ndarray:
         try:
             kind = np.dtype(dtype)
         except TypeError:
@@ -169,8 +193,8 @@ class Simulation:
                 self._renderers[key] = Handle("tractrix_renderer_create", "tractrix_renderer_destroy", self._pointer,
                                               width, height, FORMATS[kind])
             pixels = np.empty((height, width, 4), kind)
-            call("tractrix_render", self._renderers[key].value, None if view is None else ctypes.byref(_view_of(view)),
-                 ctypes.byref(image_of(pixels)))
+            call("tractrix_render_layers", self._renderers[key].value, None if view is None else ctypes.byref(_view_of(view)),
+                 ctypes.byref(image_of(pixels)), None if layers is None else ctypes.byref(layers))
         return pixels
 
 

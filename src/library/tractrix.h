@@ -341,6 +341,22 @@ void tractrix_renderer_destroy(TractrixRenderer *renderer);
 TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
                                TractrixImage *image, TractrixError *error);
 
+// Data of each pixel besides its colour: arrays [height][width], the first row is the top one;
+// NULL: not wanted. A pixel that no strand covers enough has 0 in depth, tangent and strand.
+typedef struct TractrixLayers {
+    size_t size;
+    float *coverage;  // share of the pixel that hair covers, 0 to 1
+    float *depth;     // distance from the eye along the view, m
+    float *tangent;   // [height][width][3]: unit vector along the strand in world space
+    uint32_t *strand; // number that the strand has in --aov strand and in EXR files, 24 bits
+} TractrixLayers;
+
+// Renders an image as tractrix_render does, and layers of the same state and view in the same call.
+// `layers` NULL: none. The first call with layers makes the renderer's images anew.
+TractrixResult tractrix_render_layers(TractrixRenderer *renderer, const TractrixView *view,
+                                      TractrixImage *image, const TractrixLayers *layers,
+                                      TractrixError *error);
+
 // Reads a PNG, EXR or PFM file. The content decides which, not the name. Alpha is 1 if the file has
 // none. TRACTRIX_BAD_INPUT if the file is of another kind (JPEG, too) or damaged.
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,

@@ -17,6 +17,8 @@ struct TractrixRenderer {
     Framing framing;
     Images images;
     Image image;
+    Image layers[EXR_LAYERS]; // if `layered`
+    bool layered;             // has been asked for layers
     ImageKind kind;
     bool measured;  // `exposure` is that of exposure_find
     float exposure; // EV
@@ -64,21 +66,35 @@ static Result expose(TractrixRenderer *renderer, Error *error)
 }
 
 // Makes the images, also anew after parameters of drawing have changed.
+static void destroy_pixels(TractrixRenderer *renderer)
+{
+    image_destroy(&renderer->image);
+    for (int l = 0; l < EXR_LAYERS; ++l) image_destroy(&renderer->layers[l]);
+}
+
+static Result create_pixels(TractrixRenderer *renderer, Error *error)
+{
+    const int *size = renderer->scene.run.size;
+    for (int l = 0; l < EXR_LAYERS && renderer->layered; ++l)
+        TRY(image_create_kind(&renderer->layers[l], size[0], size[1], 3, IMAGE_FLOAT, error));
+    return image_create_kind(&renderer->image, size[0], size[1],
+                             renderer_channels(&renderer->images.renderer), renderer->kind, error);
+}
+
 static Result open_images(TractrixRenderer *renderer, Error *error)
 {
     TractrixSimulation *simulation = renderer->simulation;
     const RunParams *run = &renderer->scene.run;
     images_destroy(&renderer->images);
-    image_destroy(&renderer->image);
+    destroy_pixels(renderer);
     TRY(expose(renderer, error));
     TRY(images_create(&renderer->images, &renderer->scene, &simulation->assets,
                       &simulation->simulation, &renderer->framing,
-                      &(ImagesForm){.kind = renderer->kind}, &simulation->device->gpu,
-                      &simulation->timer, error));
+                      &(ImagesForm){.kind = renderer->kind, .layers = renderer->layered},
+                      &simulation->device->gpu, &simulation->timer, error));
     renderer->images.renderer.options.exposure =
         exposure_is_wanted(run, renderer->kind) ? renderer->exposure : run->exposure.value;
-    TRY(image_create_kind(&renderer->image, run->size[0], run->size[1],
-                          renderer_channels(&renderer->images.renderer), renderer->kind, error));
+    TRY(create_pixels(renderer, error));
     renderer->looks = simulation->looks;
     return RESULT_OK;
 }
@@ -105,7 +121,7 @@ void tractrix_renderer_destroy(TractrixRenderer *renderer)
     if (!renderer) return;
     TractrixSimulation *simulation = renderer->simulation;
     if (library_on_device(simulation->device, close_renderer, renderer, &unused) == RESULT_OK) {
-        image_destroy(&renderer->image);
+        destroy_pixels(renderer);
         free(renderer);
     }
     library_drop_simulation(simulation);
@@ -194,7 +210,17 @@ static Result take_view(View *view, const TractrixView *asked, Error *error)
 typedef struct DrawCall {
     TractrixRenderer *renderer;
     const TractrixView *view;
+    bool layers; // draw these, too
 } DrawCall;
+
+static Result draw_layers(TractrixRenderer *renderer, int frame, const View *view, Error *error)
+{
+    Images *images = &renderer->images;
+    int place = images_place(images);
+    TRY(images_begin(images, frame, view, &renderer->image, renderer->layers, error));
+    TRY(images_settle(images, error));
+    return images_take(images, place, &renderer->image, renderer->layers, error);
+}
 
 static Result draw(void *data, Error *error)
 {
@@ -205,31 +231,69 @@ static Result draw(void *data, Error *error)
     View view;
     take_scene(renderer, size[0], size[1]);
     if (renderer->aims != renderer->simulation->aims) TRY(aim(renderer, error));
-    if (renderer->looks != renderer->simulation->looks || !renderer->image.pixels)
+    bool same = renderer->looks == renderer->simulation->looks && renderer->image.pixels;
+    if (!same || (call->layers && !renderer->layered)) {
+        renderer->layered |= call->layers;
         TRY(open_images(renderer, error));
+    }
     if (call->view)
         TRY(take_view(&view, call->view, error));
     else
         camera_view(&view, &renderer->scene, &renderer->framing, frame);
+    if (call->layers) return draw_layers(renderer, frame, &view, error);
     return images_draw(&renderer->images, frame, &view, &renderer->image, error);
 }
 
-TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
-                               TractrixImage *image, TractrixError *error)
+// Copies the layers that the caller wants. As in EXR files, a pixel has a strand in all of depth,
+// tangent and strand, or in none.
+static void give_layers(const TractrixRenderer *renderer, const TractrixLayers *layers)
+{
+    size_t count = (size_t)renderer->image.width * (size_t)renderer->image.height;
+    const float *from[EXR_LAYERS];
+    for (int l = 0; l < EXR_LAYERS; ++l)
+        from[l] = (const float *)(const void *)renderer->layers[l].pixels;
+    for (size_t i = 0; i < count; ++i) {
+        const ExrPixel pixel = exr_file_pixel(from, i);
+        if (layers->coverage) layers->coverage[i] = pixel.coverage;
+        if (layers->depth) layers->depth[i] = pixel.depth;
+        if (layers->strand) layers->strand[i] = pixel.strand;
+        if (layers->tangent) memcpy(layers->tangent + 3 * i, pixel.tangent, sizeof pixel.tangent);
+    }
+}
+
+static Result take_layers(TractrixLayers *taken, const TractrixLayers *layers, Error *error)
+{
+    *taken = (TractrixLayers){0};
+    return layers ? library_take(taken, sizeof *taken, layers, sizeof *taken, "layers", error)
+                  : RESULT_OK;
+}
+
+TractrixResult tractrix_render_layers(TractrixRenderer *renderer, const TractrixView *view,
+                                      TractrixImage *image, const TractrixLayers *layers,
+                                      TractrixError *error)
 {
     LIBRARY_CALL;
     Error why = {{0}};
     TractrixImage to;
+    TractrixLayers wanted;
     if (!renderer) return library_refuse(error, "renderer: got NULL");
     Result result = library_take_image(&to, image, "image", &why);
+    THEN(result, take_layers(&wanted, layers, &why));
     if (result == RESULT_OK &&
         (to.width != renderer->scene.run.size[0] || to.height != renderer->scene.run.size[1] ||
          KINDS[to.format] != renderer->kind))
         result = error_set(&why, RESULT_USAGE,
                            "image: expected the renderer's size, %dx%d, and its format",
                            renderer->scene.run.size[0], renderer->scene.run.size[1]);
-    DrawCall call = {renderer, view};
+    DrawCall call = {renderer, view, layers != NULL};
     THEN(result, library_on_device(renderer->simulation->device, draw, &call, &why));
     if (result == RESULT_OK) library_put_image(&to, &renderer->image);
+    if (result == RESULT_OK && layers) give_layers(renderer, &wanted);
     return library_end(result, &why, error);
+}
+
+TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
+                               TractrixImage *image, TractrixError *error)
+{
+    return tractrix_render_layers(renderer, view, image, NULL, error);
 }

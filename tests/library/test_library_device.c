@@ -383,6 +383,46 @@ static void is_lit_and_coloured_anew(void **state)
     tractrix_simulation_destroy(simulation);
 }
 
+// Layers hold what images of --aov show, and the image is that of a call without layers.
+static void layers_come_with_the_image(void **state)
+{
+    static uint8_t image_pixels[FIXTURE_PIXELS][4], plain[FIXTURE_PIXELS][4];
+    static float coverage[FIXTURE_PIXELS], depth[FIXTURE_PIXELS], tangent[FIXTURE_PIXELS][3],
+        aov[FIXTURE_PIXELS][4];
+    static uint32_t strand[FIXTURE_PIXELS];
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image, .width = 48, .height = 32, .pixels = image_pixels};
+    TractrixImage floats = {.size = sizeof floats,
+                            .width = 48,
+                            .height = 32,
+                            .format = TRACTRIX_RGBA32F,
+                            .pixels = aov};
+    const TractrixLayers layers = {sizeof layers, coverage, depth, tangent[0], strand};
+    int hair = 0;
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, NONE);
+    library_draw(simulation, NULL, plain);
+    WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+    WELL(tractrix_render(renderer, NULL, &image, &error));
+    WELL(tractrix_render_layers(renderer, NULL, &image, &layers, &error));
+    assert_memory_equal(image_pixels, plain, sizeof plain);
+    tractrix_renderer_destroy(renderer);
+    WELL(tractrix_simulation_set(simulation, "aov", "depth", &error));
+    WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA32F, &error));
+    WELL(tractrix_render(renderer, NULL, &floats, &error));
+    for (int i = 0; i < FIXTURE_PIXELS; ++i) {
+        const float *t = tangent[i];
+        bool there = strand[i] != 0;
+        assert_true(there == (depth[i] > 0) && coverage[i] >= 0 && coverage[i] <= 1);
+        assert_true(!there || (depth[i] == aov[i][0] && coverage[i] > 0));
+        assert_true(fabsf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2] - (float)there) < 1e-5f);
+        hair += there;
+    }
+    assert_in_range(hair, 5, FIXTURE_PIXELS);
+    tractrix_renderer_destroy(renderer);
+    tractrix_simulation_destroy(simulation);
+}
+
 // --- Images.
 
 static int count_hair(uint8_t pixels[FIXTURE_PIXELS][4])
@@ -880,6 +920,7 @@ int main(void)
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
         cmocka_unit_test(is_lit_and_coloured_anew),
+        cmocka_unit_test(layers_come_with_the_image),
         cmocka_unit_test(draws_by_views_and_formats),
         cmocka_unit_test(keeps_pixels_when_threads_change),
         cmocka_unit_test(refuses_what_has_no_effect),
