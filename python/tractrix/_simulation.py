@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import ctypes
 import itertools
+import os
+import tempfile
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Literal, NamedTuple, Union
 
 import numpy as np
@@ -13,7 +15,7 @@ from . import _arrays
 from ._declarations import FOLLOWERS, GUIDES, Layers, Positions, View
 from ._device import device
 from ._error import FAILED, error_of, usage
-from ._image import FORMATS, image_of
+from ._image import FORMATS, image_of, write_image
 from ._library import Handle, call, library, lock
 from ._pose import PoseLike, pose_of
 from ._scene import MeshLike, StrandsLike, scene_of
@@ -67,6 +69,19 @@ class Simulation:
             self._handle: Handle | None = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
         scene.close()
         self._renderers: dict[Any, Handle] = {}
+
+    def __repr__(self) -> str:
+        return "<tractrix.Simulation, closed>" if self._handle is None else f"<tractrix.Simulation at {self.time:.6g} s>"
+
+    def _repr_png_(self) -> bytes | None:
+        """The picture that notebooks show."""
+        if self._handle is None:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "hair.png")
+            write_image(path, self.render((480, 480)))
+            with open(path, "rb") as file:
+                return file.read()
 
     def __enter__(self) -> Simulation:
         return self

@@ -167,8 +167,8 @@ void tractrix_scene_destroy(TractrixScene *scene);
 
 // Appends a section of hair. `name` identifies the section in messages; NULL: "strands".
 // TRACTRIX_BAD_INPUT if a strand has fewer than 2 or more than 65,535 vertices, a number that is
-// not finite, a coordinate beyond 1e6 m, or two neighbouring vertices that coincide; the error text
-// has the number of the strand, counted from 0.
+// not finite, a coordinate beyond 1e6 m, a colour beyond 0 to 1, a negative thickness, or two
+// neighbouring vertices that coincide; the error text has the number of the strand, counted from 0.
 TractrixResult tractrix_scene_add_strands(TractrixScene *scene, const char *name,
                                           const TractrixStrands *strands, TractrixError *error);
 // Sets the mesh and replaces an earlier one; `mesh` NULL removes it. Hair collides with the mesh,

@@ -216,3 +216,31 @@ def test_simulations_of_several_threads_take_turns(curls):
         thread.join()
     np.testing.assert_array_equal(results[0], results[1])
     np.testing.assert_array_equal(results[0], results[2])
+
+
+def test_notebooks_see_the_hair_and_its_time():
+    hair = tractrix.Simulation("assets/fur.tfx", look="plain", algo="none", fps=10)
+    hair.advance()
+    assert repr(hair) == "<tractrix.Simulation at 0.1 s>" and hair._repr_png_().startswith(b"\x89PNG")
+    hair.close()
+    assert repr(hair) == "<tractrix.Simulation, closed>" and hair._repr_png_() is None
+    assert tractrix.__version__ == tractrix.version()
+
+
+@pytest.mark.parametrize("call", [lambda: tractrix.Simulation("none.tfx"), lambda: tractrix.read_image("none.png"),
+                                  lambda: tractrix.Simulation("assets/fur.tfx", mesh="none.obj")])
+def test_a_missing_file_is_what_python_calls_it(call):
+    with pytest.raises(FileNotFoundError, match="none") as caught:
+        call()
+    assert isinstance(caught.value, tractrix.TractrixValueError) and caught.value.code == 3
+
+
+@pytest.mark.parametrize("name, value", [("color", 128.0), ("color", -0.1), ("thickness", -1.0)])
+def test_values_of_vertices_have_their_range(name, value):
+    strands = np.zeros((2, 3, 3), np.float32)
+    strands[:, :, 1] = np.arange(3) * -0.1
+    array = np.full((2, 3, 3) if name == "color" else (2, 3), 0.5, np.float32)
+    array[1, 2] = value
+    with pytest.raises(tractrix.TractrixValueError, match=f"{name}: strand 1: got {value:g}: expected") as caught:
+        tractrix.Simulation(strands, unit="m", **{name: array})
+    assert caught.value.code == 3
