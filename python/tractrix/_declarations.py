@@ -5,7 +5,7 @@ compares them with the header."""
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, Structure, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import CFUNCTYPE, POINTER, Structure, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_uint64, c_void_p
 
 RGBA8, RGBA32F, RGBA16 = 0, 1, 2
 GUIDES, FOLLOWERS = 0, 1
@@ -84,6 +84,7 @@ class Layers(Sized):
                 ("strand", POINTER(c_uint32))]
 
 
+Progress = CFUNCTYPE(c_bool, c_void_p, c_double)
 HANDLE = c_void_p
 _NEW, _ERROR, _FLOATS = POINTER(HANDLE), POINTER(Error), POINTER(c_float)
 _DESTROY = (None, [HANDLE])
@@ -95,6 +96,7 @@ FUNCTIONS = {
     "tractrix_set_threads": (None, [c_int]),
     "tractrix_device_open": (c_int, [_NEW, POINTER(DeviceOptions), _ERROR]),
     "tractrix_device_destroy": _DESTROY,
+    "tractrix_device_set_progress": (None, [HANDLE, Progress, c_void_p]),
     "tractrix_device_text": (c_char_p, [HANDLE, c_char_p]),
     "tractrix_parameter": (POINTER(Parameter), [c_size_t]),
     "tractrix_scene_create": (c_int, [_NEW, c_char_p, _ERROR]),

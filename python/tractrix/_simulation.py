@@ -7,7 +7,7 @@ import ctypes
 import itertools
 import os
 import tempfile
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Literal, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Literal, NamedTuple, Union
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ._error import FAILED, error_of, usage
 from ._image import FORMATS, image_of, write_image
 from ._library import Handle, call, library, lock
 from ._pose import PoseLike, pose_of
+from ._progress import Watch
 from ._scene import MeshLike, StrandsLike, scene_of
 from ._values import bytes_of, text_of
 
@@ -60,13 +61,17 @@ class Simulation:
     a vertex with the mean thickness has the radius `radius`), `color` (of each vertex: linear RGB, or linear RGB and
     opacity) and `uv` (of each root). Raises TractrixError.
 
+    `progress` is called during the warm-up (parameter `preroll`) with the share that is done, 0 to 1, on another thread; an
+    exception that it raises ends the warm-up, as does Ctrl-C.
+
     Use `with` or close() to free the simulation; otherwise it is freed when its last reference is gone."""
 
     def __init__(self, strands: StrandsLike, *, mesh: MeshLike | None = None, deforms: bool = False,
-                 **parameters: Unpack[Parameters]) -> None:
+                 progress: Callable[[float], Any] | None = None, **parameters: Unpack[Parameters]) -> None:
+        self._handle: Handle | None = None
         scene = scene_of(strands, mesh, deforms, parameters)
-        with lock:
-            self._handle: Handle | None = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
+        with lock, Watch(progress):
+            self._handle = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
         scene.close()
         self._renderers: dict[Any, Handle] = {}
 

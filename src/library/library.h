@@ -72,6 +72,8 @@ typedef Result LibraryWork(void *data, Error *error);
 struct TractrixDevice {
     Gpu gpu;
     bool borrowed;
+    TractrixProgress *progress; // NULL: none
+    void *progress_data;
     atomic_int users; // the handle and its children
     pid_t process;    // the process that opened the device
     // Only if the device is not borrowed: its thread, and the work that the thread is to do.

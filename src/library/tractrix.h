@@ -44,10 +44,11 @@ extern "C" {
 #define TRACTRIX_VERSION_NUMBER 0x000200 // 0xMMmmpp: major, minor, patch
 typedef enum TractrixResult {            // equal to the exit statuses of the programs
     TRACTRIX_OK = 0,
-    TRACTRIX_FAILED = 1,    // a failure at run time: out of memory, disk full, driver error
-    TRACTRIX_USAGE = 2,     // an argument or the value of a parameter is wrong
-    TRACTRIX_BAD_INPUT = 3, // the content of a file, of JSON text or of an array is wrong
-    TRACTRIX_NO_GL = 4      // there is no usable OpenGL
+    TRACTRIX_FAILED = 1,     // a failure at run time: out of memory, disk full, driver error
+    TRACTRIX_USAGE = 2,      // an argument or the value of a parameter is wrong
+    TRACTRIX_BAD_INPUT = 3,  // the content of a file, of JSON text or of an array is wrong
+    TRACTRIX_NO_GL = 4,      // there is no usable OpenGL
+    TRACTRIX_CANCELLED = 130 // a TractrixProgress has returned false
 } TractrixResult;
 typedef struct TractrixError {
     char text[1024]; // "place: what is wrong: what was expected"
@@ -92,6 +93,15 @@ TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDevic
 // TRACTRIX_NO_GL if no context is current or it lacks a required feature.
 TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error);
 void tractrix_device_destroy(TractrixDevice *device);
+
+// Is told the share of a long call that is done, 0 to 1, about every 50 ms; `data` is that of
+// tractrix_device_set_progress. Returns whether the call may go on. It runs on the device's own
+// thread, or on the calling thread if the device is borrowed, and must not call the library.
+typedef bool TractrixProgress(void *data, double share);
+
+// Sets the function that tractrix_simulation_create calls during the warm-up (parameter `preroll`).
+// If it returns false, the call fails with TRACTRIX_CANCELLED. `progress` NULL: none.
+void tractrix_device_set_progress(TractrixDevice *device, TractrixProgress *progress, void *data);
 
 // Returns a property of the device. `what`: "renderer", "version", "vendor" (OpenGL's strings),
 // "processor" (name of the CPU), "path" (how the context was made, for example "EGL device 0" or

@@ -235,6 +235,14 @@ TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *er
     return library_end(result, &why, error);
 }
 
+void tractrix_device_set_progress(TractrixDevice *device, TractrixProgress *progress, void *data)
+{
+    LIBRARY_CALL;
+    if (!device) return;
+    device->progress = progress;
+    device->progress_data = data;
+}
+
 const char *tractrix_device_text(const TractrixDevice *device, const char *what)
 {
     LIBRARY_CALL;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "library/library.h"
 
+#include "base/clock.h"
 #include "base/quote.h"
 #include "scene/effects.h"
 #include "scene/scalp_guess.h"
 #include "strands/follow_plan.h"
 
+#include <epoxy/gl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -100,6 +102,30 @@ static Result load(TractrixSimulation *simulation, const TractrixScene *from, FI
     return RESULT_OK;
 }
 
+// Simulates the warm-up. With a TractrixProgress, the device is waited for now and then, so that
+// the share is that of the steps that are done, not of those that are queued.
+static Result settle(TractrixSimulation *simulation, Error *error)
+{
+    const TractrixDevice *device = simulation->device;
+    Simulation *settled = &simulation->simulation;
+    const double interval_ms = 50, whole = (double)-settled->step;
+    double last_ms = clock_ms();
+    int wait = 1, steps = 0; // wait: steps from one report to the next
+    while (simulation_settle(settled)) {
+        if (!device->progress || ++steps < wait) continue;
+        glFinish();
+        double now_ms = clock_ms(), took_ms = now_ms - last_ms;
+        if (!device->progress(device->progress_data, 1 + (double)settled->step / whole))
+            return error_set(error, RESULT_INTERRUPTED,
+                             "cancelled after %.0f %% of the warm-up (preroll)",
+                             100 * (1 + (double)settled->step / whole));
+        wait = took_ms < interval_ms / 2 ? 2 * wait : took_ms > interval_ms ? (wait + 1) / 2 : wait;
+        last_ms = clock_ms();
+        steps = 0;
+    }
+    return RESULT_OK;
+}
+
 static Result open_simulation(void *data, Error *error)
 {
     TractrixSimulation *simulation = data;
@@ -107,7 +133,7 @@ static Result open_simulation(void *data, Error *error)
     gpu_timer_create(&simulation->timer, false, gpu->software);
     TRY(simulation_create(&simulation->simulation, gpu, &simulation->timer, &simulation->scene,
                           simulation->assets.strands, simulation->assets.meshes, error));
-    while (simulation_settle(&simulation->simulation)) continue;
+    TRY(settle(simulation, error));
     simulation_pose(&simulation->simulation);
     return gpu_check("simulating", error);
 }

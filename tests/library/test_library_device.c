@@ -383,6 +383,29 @@ static void is_lit_and_coloured_anew(void **state)
     tractrix_simulation_destroy(simulation);
 }
 
+static bool give_up(void *data, double share)
+{
+    double *shares = data;
+    shares[0] = shares[1], shares[1] = share;
+    return share < 0.01;
+}
+
+static void a_warm_up_can_be_cancelled(void **state)
+{
+    static const char *const long_parameters[] = {"preroll", "3600", NULL};
+    TractrixScene *scene = library_scene(long_parameters);
+    TractrixSimulation *simulation;
+    double shares[2] = {0};
+    (void)state;
+    tractrix_device_set_progress(device, give_up, shares);
+    library_refused(tractrix_simulation_create(&simulation, device, scene, &error),
+                    TRACTRIX_CANCELLED, "cancelled after");
+    assert_null(simulation);
+    assert_true(shares[0] < shares[1] && shares[1] >= 0.01 && shares[1] < 0.5);
+    tractrix_device_set_progress(device, NULL, NULL);
+    tractrix_scene_destroy(scene);
+}
+
 // Layers hold what images of --aov show, and the image is that of a call without layers.
 static void layers_come_with_the_image(void **state)
 {
@@ -920,6 +943,7 @@ int main(void)
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
         cmocka_unit_test(is_lit_and_coloured_anew),
+        cmocka_unit_test(a_warm_up_can_be_cancelled),
         cmocka_unit_test(layers_come_with_the_image),
         cmocka_unit_test(draws_by_views_and_formats),
         cmocka_unit_test(keeps_pixels_when_threads_change),

@@ -22,6 +22,8 @@ def type_of(words, stars):
         return ctypes.c_char_p
     if words == "void":
         return ctypes.c_void_p if stars else None
+    if words == "TractrixProgress":  # a pointer to it is ctypes' function type
+        return _declarations.Progress
     if words in HANDLES:
         kind, stars = ctypes.c_void_p, stars - 1
     elif words in SCALARS:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 # simulate() and Simulation: positions of strands in the form of the input, moved by frames, poses and meshes.
 import gc
+import os
+import signal
 import threading
 import weakref
 
@@ -244,3 +246,32 @@ def test_values_of_vertices_have_their_range(name, value):
     with pytest.raises(tractrix.TractrixValueError, match=f"{name}: strand 1: got {value:g}: expected") as caught:
         tractrix.Simulation(strands, unit="m", **{name: array})
     assert caught.value.code == 3
+
+
+LONG = {"look": "plain", "preroll": 3600}  # seconds, which take minutes to simulate
+
+
+def test_a_warm_up_tells_its_progress_and_ends_when_that_raises():
+    shares = []
+
+    def stop(share):
+        shares.append(share)
+        if len(shares) == 3:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        tractrix.Simulation("assets/fur.tfx", progress=stop, **LONG)
+    assert len(shares) == 3 and 0 < shares[0] < shares[1] < shares[2] < 0.5
+    done = []
+    tractrix.Simulation("assets/fur.tfx", progress=done.append, look="plain", preroll=0.5).close()
+    assert done == sorted(done)
+
+
+def test_ctrl_c_ends_a_warm_up():
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        tractrix.Simulation("assets/fur.tfx", **LONG)
+    timer.join()
+    assert signal.set_wakeup_fd(-1) == -1
+    tractrix.Simulation("assets/fur.tfx", look="plain", algo="none").close()
