@@ -69,9 +69,19 @@ Result library_copy_image(Image *to, const TractrixImage *from, const char *name
 
 typedef Result LibraryWork(void *data, Error *error);
 
+// Exposures that have been measured on a device, by fingerprint_of_scene. The oldest one is
+// replaced.
+enum { LIBRARY_EXPOSURES = 64 };
+typedef struct LibraryExposure {
+    uint64_t scene;
+    float value; // EV
+} LibraryExposure;
+
 struct TractrixDevice {
     Gpu gpu;
     bool borrowed;
+    LibraryExposure exposures[LIBRARY_EXPOSURES];
+    uint32_t exposure_count;    // of all that were measured
     TractrixProgress *progress; // NULL: none
     void *progress_data;
     atomic_int users; // the handle and its children

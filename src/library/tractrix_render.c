@@ -2,6 +2,7 @@
 #include "library/library.h"
 
 #include "run/exposure.h"
+#include "run/fingerprint.h"
 #include "run/survey.h"
 #include "scene/camera.h"
 
@@ -50,6 +51,25 @@ static Result aim(TractrixRenderer *renderer, Error *error)
 
 // --- Lifetime.
 
+// Takes the exposure of an equal scene on this device, or measures it.
+static Result find_exposure(TractrixRenderer *renderer, Error *error)
+{
+    TractrixDevice *device = renderer->simulation->device;
+    const Assets *assets = &renderer->simulation->assets;
+    uint64_t scene;
+    TRY(fingerprint_of_scene(&scene, &renderer->scene, assets, &renderer->framing, error));
+    for (uint32_t i = 0; i < LIBRARY_EXPOSURES && i < device->exposure_count; ++i) {
+        if (device->exposures[i].scene != scene) continue;
+        renderer->exposure = device->exposures[i].value;
+        return RESULT_OK;
+    }
+    TRY(exposure_find(&renderer->exposure, &renderer->scene, assets, &renderer->framing,
+                      &device->gpu, error));
+    device->exposures[device->exposure_count++ % LIBRARY_EXPOSURES] =
+        (LibraryExposure){scene, renderer->exposure};
+    return RESULT_OK;
+}
+
 // An automatic exposure is measured once, and again only when it is set anew.
 static Result expose(TractrixRenderer *renderer, Error *error)
 {
@@ -57,9 +77,7 @@ static Result expose(TractrixRenderer *renderer, Error *error)
     const RunParams *run = &renderer->scene.run;
     bool wanted = exposure_is_wanted(run, renderer->kind);
     if (renderer->exposures != simulation->exposures) renderer->measured = false;
-    if (wanted && !renderer->measured)
-        TRY(exposure_find(&renderer->exposure, &renderer->scene, &simulation->assets,
-                          &renderer->framing, &simulation->device->gpu, error));
+    if (wanted && !renderer->measured) TRY(find_exposure(renderer, error));
     renderer->measured |= wanted;
     renderer->exposures = simulation->exposures;
     return RESULT_OK;

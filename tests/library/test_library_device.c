@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Devices of the library, simulations and images on them, and interaction with the host's OpenGL
 // context.
+#include "base/clock.h"
 #include "base/random.h"
 #include "support/library_fixture.h"
 
@@ -381,6 +382,37 @@ static void is_lit_and_coloured_anew(void **state)
     library_refused(tractrix_simulation_set_section(simulation, 0, "exposure", "1", &error),
                     TRACTRIX_USAGE, "section: got 0 for exposure, expected -1");
     tractrix_simulation_destroy(simulation);
+}
+
+// The exposure of a scene is measured once on a device: with the studio look that takes about as
+// long as the image, so creating a second renderer takes a small part of the time.
+static void keeps_the_exposure_of_a_scene(void **state)
+{
+    static uint8_t pixels[2][FIXTURE_PIXELS][4];
+    double ms[2];
+    TractrixScene *scene;
+    TractrixDevice *own;
+    (void)state;
+    WELL(tractrix_device_open(&own, NULL, &error)); // which has measured nothing yet
+    WELL(tractrix_scene_read(&scene, "assets/curls.tfx", &error));
+    WELL(tractrix_scene_set(scene, -1, "algo", "none", &error));
+    for (int i = 0; i < 2; ++i) {
+        TractrixSimulation *simulation;
+        TractrixRenderer *renderer;
+        TractrixImage image = {
+            .size = sizeof image, .width = 48, .height = 32, .pixels = pixels[i]};
+        WELL(tractrix_simulation_create(&simulation, own, scene, &error));
+        double begin = clock_processor_ms();
+        WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+        ms[i] = clock_processor_ms() - begin;
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        tractrix_renderer_destroy(renderer);
+        tractrix_simulation_destroy(simulation);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    if (!(ms[1] < 0.5 * ms[0])) fail_msg("%g and %g ms", ms[0], ms[1]);
+    tractrix_scene_destroy(scene);
+    tractrix_device_destroy(own);
 }
 
 static bool give_up(void *data, double share)
@@ -943,6 +975,7 @@ int main(void)
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
         cmocka_unit_test(is_lit_and_coloured_anew),
+        cmocka_unit_test(keeps_the_exposure_of_a_scene),
         cmocka_unit_test(a_warm_up_can_be_cancelled),
         cmocka_unit_test(layers_come_with_the_image),
         cmocka_unit_test(draws_by_views_and_formats),
