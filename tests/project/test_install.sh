@@ -99,6 +99,7 @@ done
 
 claim "ldconfig runs where the folder is one of the system's, and nowhere else"
 mkdir "$work/fake"
+# shellcheck disable=SC2016 # of the script that it writes
 printf '#!/bin/sh\necho "%s/home/lib: (from a file)"\n[ "$1" = -N ] || echo ran >"%s/ran"\n' "$work" "$work" >"$work/fake/ldconfig"
 chmod 755 "$work/fake/ldconfig"
 for home in other home; do
