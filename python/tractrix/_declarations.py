@@ -101,6 +101,7 @@ FUNCTIONS = {
     "tractrix_parameter": (POINTER(Parameter), [c_size_t]),
     "tractrix_scene_create": (c_int, [_NEW, c_char_p, _ERROR]),
     "tractrix_scene_read": (c_int, [_NEW, c_char_p, _ERROR]),
+    "tractrix_scene_parse": (c_int, [_NEW, c_char_p, c_char_p, _ERROR]),
     "tractrix_scene_destroy": _DESTROY,
     "tractrix_scene_add_strands": (c_int, [HANDLE, c_char_p, POINTER(Strands), _ERROR]),
     "tractrix_scene_set_mesh": (c_int, [HANDLE, POINTER(Mesh), _ERROR]),

@@ -53,7 +53,7 @@ class Layered(NamedTuple):
 class Simulation:
     """A simulation of hair. It starts at time 0; each `advance` simulates one frame.
 
-    `strands` is the path of a hair file or scene file, or arrays of root-first vertices: (S, V, 3), a list of (V, 3),
+    `strands` is the path of a hair file or scene file, a dict with what a scene file holds, or arrays of root-first vertices: (S, V, 3), a list of (V, 3),
     or (points, sizes). Arrays need `unit`. `mesh` is (vertices, triangles) or a path, or, for a scene of several
     bodies, a dict of (vertices, triangles) by the number of the body. With `deforms` you pass the vertices of the mesh
     to each `advance`. All other keywords are the parameters of tractrix-render (docs/options.md),

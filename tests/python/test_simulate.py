@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # simulate() and Simulation: positions of strands in the form of the input, moved by frames, poses and meshes.
 import gc
+import json
 import os
 import signal
 import threading
@@ -275,3 +276,30 @@ def test_ctrl_c_ends_a_warm_up():
     timer.join()
     assert signal.set_wakeup_fd(-1) == -1
     tractrix.Simulation("assets/fur.tfx", look="plain", algo="none").close()
+
+
+def test_a_scene_is_a_dict(tmp_path):
+    scene = {"look": "plain", "sections": [{"file": "assets/fur.tfx", "color": "#c02040"}, {"file": "assets/curls.tfx", "radius": np.float64(1e-3)}]}
+    (tmp_path / "scene.json").write_text(json.dumps({**scene, "sections": [{**section, "file": os.path.abspath(section["file"])} for section in scene["sections"]]}, default=float))
+    images = [tractrix.render(source, size=(48, 32), exposure=0, algo="none") for source in (scene, tmp_path / "scene.json")]
+    assert (images[0] == images[1]).all()
+    with pytest.raises(tractrix.TractrixValueError, match="sections"):
+        tractrix.Simulation({"sections": 3})
+    with pytest.raises(tractrix.TractrixValueError, match="strands: .*expected a dict with what"):
+        tractrix.Simulation({"sections": [object()]})
+
+
+def test_rotations_and_meshes_of_other_modules_are_taken():
+    class Rotation:
+        def as_quat(self):
+            return np.array([0, 0, 1, 0])
+
+    class Trimesh:
+        vertices, faces = np.eye(3), np.array([[0, 1, 2]])
+
+    heads = [(Rotation(), (0.1, 0, 0)), ((0, 0, 1, 0), (0.1, 0, 0))]
+    moved = [list(tractrix.simulate("assets/fur.tfx", head=[head], look="plain"))[0] for head in heads]
+    assert (moved[0] == moved[1]).all()
+    meshes = (Trimesh(), (Trimesh.vertices, Trimesh.faces))
+    images = [tractrix.render("assets/fur.tfx", mesh=mesh, mesh_unit="m", look="plain", algo="none", exposure=0, size=(48, 32)) for mesh in meshes]
+    assert (images[0] == images[1]).all()
