@@ -130,6 +130,25 @@ class Simulation:
             for name, value in parameters.items():
                 call("tractrix_simulation_set_section", self._pointer, section, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
 
+    def save(self) -> bytes:
+        """The state of the simulation. A simulation of an equal scene continues from it with `restore`, bit for bit. Raises
+        TractrixError(2) if you have moved the head, the mesh or a body."""
+        with lock:
+            state = Handle("tractrix_simulation_save", "tractrix_state_destroy", self._pointer)
+            size = ctypes.c_size_t()
+            address = library().tractrix_state_bytes(state.value, ctypes.byref(size))
+            content = ctypes.string_at(address, size.value)
+            state.close()
+        return content
+
+    def restore(self, state: bytes) -> None:
+        """Returns to a state that `save` gave: its time, and the hair as it was. Raises TractrixError(3) for a state of other
+        hair or solvers."""
+        with lock:
+            made = Handle("tractrix_state_create", "tractrix_state_destroy", state, len(state))
+            call("tractrix_simulation_restore", self._pointer, made.value)
+            made.close()
+
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
         """Simulates one frame, which is speed / fps seconds of the scene (parameters `fps` and `speed`; `speed` is 1 by
         default). `head`: the pose of the head at the end of the frame, a rigid (4, 4) matrix or a quaternion and a

@@ -181,9 +181,10 @@ struct TractrixSimulation {
     LibraryMap *maps;                    // [2 * sections]: guides and followers of each section
     DrivenHead driven[SCENE_MAX_BODIES]; // heads that the caller moves
     LibraryPlace next[SCENE_MAX_BODIES];
-    uint64_t aims;      // how often a camera parameter was changed
-    uint64_t looks;     // how often a parameter of drawing alone was changed
-    uint64_t exposures; // how often the exposure was
+    bool is_driven[SCENE_MAX_BODIES]; // the caller has placed the body
+    uint64_t aims;                    // how often a camera parameter was changed
+    uint64_t looks;                   // how often a parameter of drawing alone was changed
+    uint64_t exposures;               // how often the exposure was
 };
 
 // Free the simulation's maps: library_end_copies frees the GPU's objects and needs the device's

@@ -58,6 +58,7 @@ typedef struct TractrixScene TractrixScene;
 typedef struct TractrixSimulation TractrixSimulation;
 typedef struct TractrixRenderer TractrixRenderer;
 typedef struct TractrixPicture TractrixPicture;
+typedef struct TractrixState TractrixState;
 
 // The version of the loaded library: as a number like TRACTRIX_VERSION_NUMBER, and as the text that
 // the programs' --version prints ("0.2.0"; builds between two versions also name the commit).
@@ -281,6 +282,23 @@ TractrixResult tractrix_simulation_place_body_mesh(TractrixSimulation *simulatio
                                                    const float *position, uint32_t vertex_count,
                                                    TractrixError *error);
 double tractrix_simulation_time(const TractrixSimulation *simulation); // scene time, s
+
+// Saves the state of the simulation between two frames. A simulation of an equal scene on a device
+// of the same kind continues from there, bit for bit, as if it had never stopped. The call waits
+// for the GPU. TRACTRIX_USAGE if the caller has moved a body of the scene.
+TractrixResult tractrix_simulation_save(TractrixState **state, TractrixSimulation *simulation,
+                                        TractrixError *error);
+// Returns to a state: its time, and the hair as it was. TRACTRIX_BAD_INPUT if the state is of other
+// hair or solvers, or damaged; the simulation may then be partly changed, and only a restored state
+// makes it usable again.
+TractrixResult tractrix_simulation_restore(TractrixSimulation *simulation,
+                                           const TractrixState *state, TractrixError *error);
+// The bytes of a state, for example for a file, and a state made of them. The bytes belong to the
+// state; `size` may be NULL.
+const void *tractrix_state_bytes(const TractrixState *state, size_t *size);
+TractrixResult tractrix_state_create(TractrixState **state, const void *bytes, size_t size,
+                                     TractrixError *error);
+void tractrix_state_destroy(TractrixState *state);
 
 typedef enum TractrixPart { TRACTRIX_GUIDES = 0, TRACTRIX_FOLLOWERS = 1 } TractrixPart;
 

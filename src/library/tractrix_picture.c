@@ -264,5 +264,6 @@ TractrixResult tractrix_image_write_with(const TractrixImage *image, const char 
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error)
 {
+    LIBRARY_CALL;
     return tractrix_image_write_with(image, path, NULL, error);
 }

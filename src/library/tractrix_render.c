@@ -313,5 +313,6 @@ TractrixResult tractrix_render_layers(TractrixRenderer *renderer, const Tractrix
 TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
                                TractrixImage *image, TractrixError *error)
 {
+    LIBRARY_CALL;
     return tractrix_render_layers(renderer, view, image, NULL, error);
 }

@@ -247,6 +247,7 @@ static Result place(TractrixSimulation *simulation, uint32_t b, double before, d
                     Error *error)
 {
     LibraryPlace *next = &simulation->next[b];
+    simulation->is_driven[b] |= next->posed || next->mesh;
     MovingBody *moved = &simulation->simulation.bodies[b];
     if (next->posed) {
         TRY(moving_body_expect_motion(moved, &simulation->device->gpu, error));

@@ -415,6 +415,50 @@ static void keeps_the_exposure_of_a_scene(void **state)
     tractrix_device_destroy(own);
 }
 
+// From a saved state hair moves as it did before, in the same simulation and in another one.
+static void returns_to_a_state(void **state)
+{
+    static const char *const blown[] = {"wind", "3,0,0", NULL};
+    static uint8_t pixels[3][FIXTURE_PIXELS][4];
+    float positions[3][FIXTURE_VERTICES][4];
+    TractrixState *saved, *copy;
+    size_t size;
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, blown), *other = simulate(device, blown);
+    for (int i = 0; i < 4; ++i) WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    WELL(tractrix_simulation_save(&saved, simulation, &error));
+    const void *bytes = tractrix_state_bytes(saved, &size);
+    WELL(tractrix_state_create(&copy, bytes, size, &error));
+    double time = tractrix_simulation_time(simulation);
+    for (int turn = 0; turn < 3; ++turn) {
+        TractrixSimulation *moved = turn == 2 ? other : simulation;
+        if (turn) WELL(tractrix_simulation_restore(moved, turn == 2 ? copy : saved, &error));
+        assert_true(tractrix_simulation_time(moved) == time);
+        library_draw(moved, NULL, pixels[turn]);
+        for (int i = 0; i < 6; ++i) WELL(tractrix_simulation_advance(moved, NULL, &error));
+        memcpy(positions[turn], map(moved, TRACTRIX_GUIDES).position, sizeof positions[turn]);
+    }
+    for (int turn = 1; turn < 3; ++turn) {
+        assert_memory_equal(positions[0], positions[turn], sizeof positions[0]);
+        assert_memory_equal(pixels[0], pixels[turn], sizeof pixels[0]);
+    }
+    tractrix_state_destroy(copy);
+    WELL(tractrix_state_create(&copy, bytes, size / 2, &error));
+    library_refused(tractrix_simulation_restore(other, copy, &error), TRACTRIX_BAD_INPUT,
+                    "another simulation");
+    WELL(tractrix_simulation_restore(other, saved, &error));
+    TractrixPose pose = pose_after(1);
+    WELL(tractrix_simulation_advance(other, &pose, &error));
+    TractrixState *none;
+    library_refused(tractrix_simulation_save(&none, other, &error), TRACTRIX_USAGE,
+                    "the caller moves body 0");
+    assert_null(none);
+    tractrix_state_destroy(saved);
+    tractrix_state_destroy(copy);
+    tractrix_simulation_destroy(simulation);
+    tractrix_simulation_destroy(other);
+}
+
 static bool give_up(void *data, double share)
 {
     double *shares = data;
@@ -976,6 +1020,7 @@ int main(void)
         cmocka_unit_test(takes_live_parameters),
         cmocka_unit_test(is_lit_and_coloured_anew),
         cmocka_unit_test(keeps_the_exposure_of_a_scene),
+        cmocka_unit_test(returns_to_a_state),
         cmocka_unit_test(a_warm_up_can_be_cancelled),
         cmocka_unit_test(layers_come_with_the_image),
         cmocka_unit_test(draws_by_views_and_formats),

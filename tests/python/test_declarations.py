@@ -9,7 +9,7 @@ from tractrix import _declarations, _error, _library
 
 SCALARS = {"size_t": ctypes.c_size_t, "uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64, "int": ctypes.c_int,
            "bool": ctypes.c_bool, "float": ctypes.c_float, "double": ctypes.c_double, "char": ctypes.c_char}
-HANDLES = {"TractrixDevice", "TractrixScene", "TractrixSimulation", "TractrixRenderer", "TractrixPicture"}
+HANDLES = {"TractrixDevice", "TractrixScene", "TractrixSimulation", "TractrixRenderer", "TractrixPicture", "TractrixState"}
 
 
 def without_comments(text):

@@ -303,3 +303,17 @@ def test_rotations_and_meshes_of_other_modules_are_taken():
     meshes = (Trimesh(), (Trimesh.vertices, Trimesh.faces))
     images = [tractrix.render("assets/fur.tfx", mesh=mesh, mesh_unit="m", look="plain", algo="none", exposure=0, size=(48, 32)) for mesh in meshes]
     assert (images[0] == images[1]).all()
+
+
+def test_a_simulation_returns_to_a_state():
+    with tractrix.Simulation("assets/fur.tfx", look="plain", wind=(3, 0, 0)) as hair:
+        hair.advance()
+        state = hair.save()
+        ends = []
+        for _ in range(2):
+            hair.advance()
+            ends.append(hair.positions())
+            hair.restore(state)
+        assert (ends[0] == ends[1]).all()
+        with pytest.raises(tractrix.TractrixValueError, match="another simulation"):
+            hair.restore(state[:100])
