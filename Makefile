@@ -92,7 +92,7 @@ FAULT_CALLS := $(shell sed -nEf tests/faults/wrapped.sed tests/faults/calls.def)
 TORTURE   := $(OUT)/tests/faults/torture
 DELAYS    := $(OUT)/tests/faults/delays.so
 TORTURE_OBJECTS := $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/faults/inject.c tests/faults/delays.c,$(wildcard tests/faults/*.c)))
-FOLDERS   := $(sort $(OUT)/lib/ $(OUT)/lib/pkgconfig/ $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
+FOLDERS   := $(sort $(OUT)/lib/ $(OUT)/lib/pkgconfig/ $(OUT)/lib/cmake/tractrix/ $(dir $(OBJECTS) $(SUPPORT_OBJECTS) $(FUZZ_OBJECTS) $(TEST_PROGRAMS) $(FAULTY) $(TORTURE)))
 
 # --- Build. Recipes that call make use all processors unless -j says otherwise.
 JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -119,7 +119,7 @@ LANE_FLAGS := $(if $(filter release,$(CONFIG)),-O3) -fno-math-errno -fno-trappin
 # Lanes: without these flags, selects and square roots are not vectorised, because they might trap or set errno. Loops
 # of 16 lanes must not be unrolled before they are vectorised (gcc unrolls loops of up to 16 turns). The results have
 # the same bits.
-$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS)
+$(filter-out $(LANE_PIXELS),$(patsubst src/%.c,$(OUT)/%.o,$(wildcard src/lanes/*.c))) $(OUT)/draw/fibre_lobes.o $(OUT)/draw/light_tables.o $(OUT)/draw/light_cone.o $(OUT)/mesh/mesh_binding.o $(OUT)/image/convolve.o $(OUT)/image/flip.o $(OUT)/image/ssim.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS)
 $(OUT)/mesh/head.o: C_FLAGS += $(LANE_FLAGS) $(KEEP_LOOPS:15=6) # loops of 8 points
 $(LANE_PIXELS): C_FLAGS += $(LANE_FLAGS) -ffinite-math-only -fno-signed-zeros
 EMBED_GLSL := scripts/embed-text gpu/shader.h GlslSource
@@ -143,12 +143,13 @@ $(OUT)/libtractrix.a: $(OBJECTS) $(OUT)/files
 # The library for other programs (tractrix.h), made of its room and of what this needs from the archive above. The
 # static library is a single object in which only the API has global names, so that no name can clash with the host's.
 LIBRARY_OBJECTS := $(filter $(OUT)/library/%,$(OBJECTS))
-LIBRARY := $(addprefix $(OUT)/lib/,libtractrix.so.0 libtractrix.so libtractrix.a pkgconfig/tractrix.pc)
+CMAKE_FILES := cmake/tractrix/tractrix-config.cmake cmake/tractrix/tractrix-config-version.cmake
+LIBRARY := $(addprefix $(OUT)/lib/,libtractrix.so.0 libtractrix.so libtractrix.a pkgconfig/tractrix.pc $(CMAKE_FILES))
 SHARED  := -shared -Wl,-soname,libtractrix.so.0 -Wl,--version-script=src/library/tractrix.map -Wl,-z,nodelete
 ifeq ($(SANITIZE_$(CONFIG)),)
 SHARED  += -Wl,-z,defs
 endif
-library: $(LIBRARY) ## build libtractrix.so.0, libtractrix.a and tractrix.pc
+library: $(LIBRARY) ## build libtractrix.so.0, libtractrix.a, tractrix.pc and files for CMake
 $(OUT)/lib/libtractrix.so.0: $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a src/library/tractrix.map
 	$(call run,LINK,$(CC) $(LD_FLAGS) $(SHARED) -o $@ $(LIBRARY_OBJECTS) $(OUT)/libtractrix.a $(LD_LIBS))
 $(OUT)/lib/libtractrix.so: $(OUT)/lib/libtractrix.so.0
@@ -160,6 +161,8 @@ $(OUT)/lib/libtractrix.a: $(OUT)/lib/tractrix.o
 $(OUT)/lib/pkgconfig/tractrix.pc: src/library/tractrix.pc.in $(OUT)/places
 	$(call run,MAKE,sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBRARIES@|$(LIBRARIES)|' \
 	    -e 's|@LIBS@|$(filter -lOpenEXRCore%,$(LD_LIBS))|' $< >$@.tmp && mv $@.tmp $@)
+$(OUT)/lib/cmake/tractrix/%.cmake: src/library/%.cmake.in $(OUT)/places
+	$(call run,MAKE,sed -e 's|@INCLUDE@|$(shell realpath -m --relative-to=$(LIBDIR) $(PREFIX)/include)|; s|@VERSION@|$(VERSION)|' $< >$@.tmp && mv $@.tmp $@)
 define program # MAIN: the program of src/MAIN.c, a room and its main
 $(OUT)/$(patsubst main_%,tractrix-%,$(notdir $(1))): $(OUT)/$(1).o $(KEEP_$(CONFIG)) $(OUT)/libtractrix.a
 	$$(call run,LINK,$$(CC) $$(LD_FLAGS) -o $$@ $$^ $$(LD_LIBS))
@@ -422,13 +425,18 @@ completion_name_fish := %.fish
 completion_name_zsh := _%
 EXAMPLES := $(wildcard examples/* examples/*/* examples/*/*/*)
 
+# Programs find a new library in a system's folder once ldconfig has seen it. A package's scripts do this later (DESTDIR).
+REFRESH := [ "$(DESTDIR)" ] || ! PATH=$$PATH:/usr/sbin:/sbin ldconfig -N -v 2>/dev/null | grep -q '^$(LIBDIR):' || \
+    PATH=$$PATH:/usr/sbin:/sbin ldconfig || echo "install: run ldconfig as root: programs do not find libtractrix.so.0 before that" >&2
+
 install: all $(MANUALS) $(COMPLETIONS) ## install programs, library, manuals, completion, docs, assets and examples under $(DESTDIR)$(PREFIX)
 	install -d $(BIN_DIR) $(MAN_DIR) $(bash_DIR) $(fish_DIR) $(zsh_DIR) $(DATA_DIR) $(DOC_DIR)/docs
 	install $(PROGRAMS) $(SCRIPTS) $(BIN_DIR)
-	install -d $(LIB_DIR)/pkgconfig $(INCLUDE_DIR)
+	install -d $(LIB_DIR)/pkgconfig $(LIB_DIR)/cmake/tractrix $(INCLUDE_DIR)
 	install -m 644 $(OUT)/lib/libtractrix.so.0 $(OUT)/lib/libtractrix.a $(LIB_DIR)
 	ln -sf libtractrix.so.0 $(LIB_DIR)/libtractrix.so
 	install -m 644 $(OUT)/lib/pkgconfig/tractrix.pc $(LIB_DIR)/pkgconfig
+	install -m 644 $(addprefix $(OUT)/lib/,$(CMAKE_FILES)) $(LIB_DIR)/cmake/tractrix
 	install -m 644 src/library/tractrix.h $(INCLUDE_DIR)
 	install -m 644 scripts/blender_hair.py $(DATA_DIR)
 	install -m 644 $(MANUALS) $(MAN_DIR)
@@ -440,12 +448,14 @@ install: all $(MANUALS) $(COMPLETIONS) ## install programs, library, manuals, co
 	install -D -m 644 -t $(DOC_DIR)/docs/notes $(wildcard docs/notes/*.md)
 	ln -sfn ../../tractrix $(DOC_DIR)/assets
 	$(foreach file,$(EXAMPLES),$(if $(wildcard $(file)/.),,install -D -m $(if $(shell test -x $(file) && echo x),755,644) $(file) $(DOC_DIR)/$(file) &&)) true
+	@$(REFRESH)
 
 uninstall: ## remove what `make install` installed
 	rm -f $(addprefix $(LIB_DIR)/,$(LIBRARY:$(OUT)/lib/%=%)) $(INCLUDE_DIR)/tractrix.h
 	rm -f $(addprefix $(BIN_DIR)/,$(notdir $(PROGRAMS) $(SCRIPTS))) $(addprefix $(MAN_DIR)/,$(notdir $(MANUALS)))
 	rm -f $(foreach file,$(COMPLETIONS),$(call completion_of,$(file)))
-	rm -rf $(DATA_DIR) $(DOC_DIR)
+	rm -rf $(DATA_DIR) $(DOC_DIR) $(LIB_DIR)/cmake/tractrix
+	@$(REFRESH)
 	for folder in $(bash_DIR) $(fish_DIR) $(zsh_DIR); do rmdir $$folder $$(dirname $$folder) 2>/dev/null || true; done
 
 clean: ## remove out/

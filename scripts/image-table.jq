@@ -4,7 +4,7 @@
 # --arg sheets PREFIX: prefix of links to the sheets ("": no links); --argjson pictures NAMES: those that have a picture
 # at PREFIX
 def number: if type == "number" then (. * 10000 | round) / 10000 | tostring else "" end;
-def known: . as $outcome | ["same", "different", "size mismatch", "new", "missing", "unrendered", "unreadable", "failed"] | index($outcome) != null;
+def known: . as $outcome | ["same", "within limits", "different", "size mismatch", "new", "missing", "unrendered", "unreadable", "failed"] | index($outcome) != null;
 def level: if . == "platform" or . == "class" or . == "common" then " (\(.))" else "" end;
 def plain: type == "string" and test("\\A[A-Za-z0-9._%-]{1,80}\\z");
 def row: "| `\(.name)` | \(.outcome)\(if .outcome == "different" then .level | level else "" end)\(if .updated == true then ", updated" else "" end) | \(.flip | number) | \(.failing_pixels | number) |";

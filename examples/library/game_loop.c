@@ -65,16 +65,15 @@ int main(int argc, char **argv)
     glBufferData(GL_ARRAY_BUFFER, 16 * (GLsizeiptr)hair.vertex_count, NULL, GL_DYNAMIC_DRAW);
     glGenVertexArrays(1, &array), glBindVertexArray(array);
     glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, NULL), glEnableVertexAttribArray(0);
+    glUseProgram(program), glViewport(0, 0, WIDTH, HEIGHT);
+    glClearColor(0.1f, 0.11f, 0.13f, 1);
 
     for (int frame = 1; frame <= FRAMES; ++frame) {
         double angle = 0.4 * sin(frame * 0.15); // the head bone turns
         TractrixPose head = {{0, 0, sin(angle / 2), cos(angle / 2)}, {0}};
         HAIR(tractrix_simulation_advance(simulation, &head, &error));
         HAIR(tractrix_simulation_copy_to_gl(simulation, 0, TRACTRIX_GUIDES, buffer, 0, &error));
-        // The library has restored OpenGL's defaults; the host must bind its own state again.
-        glBindFramebuffer(GL_FRAMEBUFFER, target), glViewport(0, 0, WIDTH, HEIGHT);
-        glClearColor(0.1f, 0.11f, 0.13f, 1), glClear(GL_COLOR_BUFFER_BIT);
-        glUseProgram(program), glBindVertexArray(array);
+        glClear(GL_COLOR_BUFFER_BIT); // the library has restored the host's state
         glMultiDrawArrays(GL_LINE_STRIP, first, (const GLsizei *)hair.sizes,
                           (GLsizei)hair.strand_count);
     }

@@ -5,7 +5,7 @@ compares them with the header."""
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, Structure, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import CFUNCTYPE, POINTER, Structure, c_bool, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_uint64, c_void_p
 
 RGBA8, RGBA32F, RGBA16 = 0, 1, 2
 GUIDES, FOLLOWERS = 0, 1
@@ -64,15 +64,27 @@ class View(Sized):
 
 class Limits(Sized):
     _fields_ = [("size", c_size_t), ("pixel_tolerance", c_double), ("max_failing_percent", c_double),
-                ("max_flip", c_double), ("pixels_per_degree", c_double)]
+                ("max_flip", c_double), ("pixels_per_degree", c_double), ("max_difference", c_double),
+                ("max_local_difference", c_double)]
 
 
 class Figures(Sized):
     _fields_ = [("size", c_size_t), ("compared", c_uint64), ("failing", c_uint64), ("largest", c_double),
                 ("at", c_int * 2), ("rmse", c_double), ("psnr", c_double), ("ssim", c_double), ("flip", c_double),
-                ("flip_most", c_double), ("same", c_bool)]
+                ("flip_most", c_double), ("same", c_bool), ("within", c_bool), ("equal", c_bool), ("local_at", c_int * 2),
+                ("local_difference", c_double)]
 
 
+class WriteOptions(Sized):
+    _fields_ = [("size", c_size_t), ("half", c_bool)]
+
+
+class Layers(Sized):
+    _fields_ = [("size", c_size_t), ("coverage", POINTER(c_float)), ("depth", POINTER(c_float)), ("tangent", POINTER(c_float)),
+                ("strand", POINTER(c_uint32))]
+
+
+Progress = CFUNCTYPE(c_bool, c_void_p, c_double)
 HANDLE = c_void_p
 _NEW, _ERROR, _FLOATS = POINTER(HANDLE), POINTER(Error), POINTER(c_float)
 _DESTROY = (None, [HANDLE])
@@ -84,10 +96,12 @@ FUNCTIONS = {
     "tractrix_set_threads": (None, [c_int]),
     "tractrix_device_open": (c_int, [_NEW, POINTER(DeviceOptions), _ERROR]),
     "tractrix_device_destroy": _DESTROY,
+    "tractrix_device_set_progress": (None, [HANDLE, Progress, c_void_p]),
     "tractrix_device_text": (c_char_p, [HANDLE, c_char_p]),
     "tractrix_parameter": (POINTER(Parameter), [c_size_t]),
     "tractrix_scene_create": (c_int, [_NEW, c_char_p, _ERROR]),
     "tractrix_scene_read": (c_int, [_NEW, c_char_p, _ERROR]),
+    "tractrix_scene_parse": (c_int, [_NEW, c_char_p, c_char_p, _ERROR]),
     "tractrix_scene_destroy": _DESTROY,
     "tractrix_scene_add_strands": (c_int, [HANDLE, c_char_p, POINTER(Strands), _ERROR]),
     "tractrix_scene_set_mesh": (c_int, [HANDLE, POINTER(Mesh), _ERROR]),
@@ -96,20 +110,25 @@ FUNCTIONS = {
     "tractrix_simulation_create": (c_int, [_NEW, HANDLE, HANDLE, _ERROR]),
     "tractrix_simulation_destroy": _DESTROY,
     "tractrix_simulation_messages": (c_char_p, [HANDLE]),
-    "tractrix_simulation_set": (c_int, [HANDLE, c_char_p, c_char_p, _ERROR]),
+    "tractrix_simulation_set_section": (c_int, [HANDLE, c_int, c_char_p, c_char_p, _ERROR]),
     "tractrix_simulation_advance": (c_int, [HANDLE, POINTER(Pose), _ERROR]),
     "tractrix_simulation_advance_mesh": (c_int, [HANDLE, _FLOATS, c_uint32, _ERROR]),
     "tractrix_simulation_place_body": (c_int, [HANDLE, c_uint32, POINTER(Pose), _ERROR]),
     "tractrix_simulation_place_body_mesh": (c_int, [HANDLE, c_uint32, _FLOATS, c_uint32, _ERROR]),
     "tractrix_simulation_time": (c_double, [HANDLE]),
+    "tractrix_simulation_save": (c_int, [_NEW, HANDLE, _ERROR]),
+    "tractrix_simulation_restore": (c_int, [HANDLE, HANDLE, _ERROR]),
+    "tractrix_state_bytes": (c_void_p, [HANDLE, POINTER(c_size_t)]),
+    "tractrix_state_create": (c_int, [_NEW, c_void_p, c_size_t, _ERROR]),
+    "tractrix_state_destroy": _DESTROY,
     "tractrix_simulation_map": (c_int, [HANDLE, c_int, c_int, POINTER(Positions), _ERROR]),
     "tractrix_renderer_create": (c_int, [_NEW, HANDLE, c_int, c_int, c_int, _ERROR]),
     "tractrix_renderer_destroy": _DESTROY,
-    "tractrix_render": (c_int, [HANDLE, POINTER(View), POINTER(Image), _ERROR]),
+    "tractrix_render_layers": (c_int, [HANDLE, POINTER(View), POINTER(Image), POINTER(Layers), _ERROR]),
     "tractrix_picture_read": (c_int, [_NEW, c_char_p, _ERROR]),
     "tractrix_picture_image": (POINTER(Image), [HANDLE]),
     "tractrix_picture_destroy": _DESTROY,
-    "tractrix_image_write": (c_int, [POINTER(Image), c_char_p, _ERROR]),
+    "tractrix_image_write_with": (c_int, [POINTER(Image), c_char_p, POINTER(WriteOptions), _ERROR]),
     "tractrix_compare": (c_int, [POINTER(Figures), _FLOATS, POINTER(Image), POINTER(Image), POINTER(Image),
                                  POINTER(Limits), _ERROR]),
 }

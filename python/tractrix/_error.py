@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+
 FAILED, USAGE, BAD_INPUT, NO_GL = 1, 2, 3, 4
 
 
@@ -23,7 +26,13 @@ class TractrixValueError(TractrixError, ValueError):
     """An argument, a parameter (code 2) or the content of an array or file (code 3) is wrong."""
 
 
+class TractrixFileNotFoundError(TractrixValueError, FileNotFoundError):
+    """A file that an argument or a scene names does not exist."""
+
+
 def error_of(code: int, text: str) -> TractrixError:
+    if text.endswith(f": {os.strerror(errno.ENOENT)}"):
+        return TractrixFileNotFoundError(code, text)
     return (TractrixValueError if code in (USAGE, BAD_INPUT) else TractrixError)(code, text)
 
 

@@ -9,7 +9,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from ._declarations import RGBA8, RGBA16, RGBA32F, Image
+from ._declarations import RGBA8, RGBA16, RGBA32F, Image, WriteOptions
 from ._error import usage
 from ._library import Handle, call, library
 from ._values import bytes_of
@@ -25,11 +25,15 @@ def rgba(name: str, value: Any) -> np.ndarray:
     sRGB with straight alpha; floats are linear light with premultiplied alpha."""
     if isinstance(value, (str, os.PathLike)):
         return read_image(value)
+    if isinstance(value, np.ma.MaskedArray):
+        raise usage(f"{name}: a masked array: expected an array without a mask, and mask=... where images are compared")
     array = np.asarray(value)
+    if array.dtype == bool:
+        array = array.astype(np.uint8) * 255
     if array.dtype.kind == "f":
         array = array.astype(np.float32, copy=False)
     if array.dtype not in FORMATS:
-        raise usage(f"{name}: {array.dtype}: expected uint8, uint16, floats or a path")
+        raise usage(f"{name}: {array.dtype}: expected uint8, uint16, bool, floats or a path")
     if array.ndim == 2:
         array = array[:, :, None]
     if array.ndim != 3 or array.shape[2] not in (1, 3, 4) or 0 in array.shape:
@@ -60,9 +64,12 @@ def read_image(path: str | os.PathLike[str]) -> np.ndarray:
     return array.view(dtype).reshape(len(array), -1, 4)
 
 
-def write_image(path: str | os.PathLike[str], image: ImageLike) -> None:
+def write_image(path: str | os.PathLike[str], image: ImageLike, *, half: bool | None = None) -> None:
     """Writes an image file. The suffix of `path` decides the file format: .png for uint8 and uint16, .jpg for opaque
     uint8, .exr or .pfm for floats. If all pixels are opaque, the file has no alpha channel; a .pfm file never has
-    one."""
+    one. EXR files hold 32 bits a channel, with `half` 16; None: 16 for arrays of float16. NaN and infinity are refused."""
     array = rgba("image", image)
-    call("tractrix_image_write", ctypes.byref(image_of(array)), bytes_of("path", path))
+    if half is None:
+        half = isinstance(image, np.ndarray) and image.dtype == np.float16 and os.fspath(path).lower().endswith(".exr")
+    call("tractrix_image_write_with", ctypes.byref(image_of(array)), bytes_of("path", path),
+         ctypes.byref(WriteOptions(half=half)))

@@ -11,15 +11,18 @@ from . import _arrays
 from ._declarations import Pose
 from ._error import usage
 
-# A rigid (4, 4) matrix, or ((x, y, z, w), (x, y, z)).
-PoseLike = Union[np.ndarray, "tuple[np.ndarray, np.ndarray]"]
+# A rigid (4, 4) matrix, or ((x, y, z, w), (x, y, z)); a rotation may also be a Rotation of scipy.
+PoseLike = Union[np.ndarray, "tuple[Any, np.ndarray]", Any]
 
 ROUNDING = 1e-4  # tolerance: rounding errors of a product of some float32 matrices
 
 
 def pose_of(value: PoseLike) -> Pose:
+    if hasattr(value, "as_quat"):
+        value = value, (0.0, 0.0, 0.0)
     if isinstance(value, (tuple, list)) and len(value) == 2:
-        rotation = _arrays.numbers("head[0]", value[0], (4,), np.float64)
+        turn = value[0].as_quat() if hasattr(value[0], "as_quat") else value[0]
+        rotation = _arrays.numbers("head[0]", turn, (4,), np.float64)
         translation = _arrays.numbers("head[1]", value[1], (3,), np.float64)
         return Pose(rotation=tuple(rotation), translation=tuple(translation))
     matrix = _arrays.numbers("head", value, (4, 4), np.float64)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 from ctypes import c_float, c_uint32
 from typing import Any, Mapping, Sequence, Tuple, Union
@@ -16,11 +17,11 @@ from ._error import usage
 from ._library import Handle, call
 from ._values import bytes_of, text_of
 
-# (S, V, 3), a list of (V, 3), (points, sizes), or the path of a hair or scene file.
-StrandsLike = Union[np.ndarray, Sequence[np.ndarray], "tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]"]
+# (S, V, 3), a list of (V, 3), (points, sizes), the path of a hair or scene file, or what a scene file holds.
+StrandsLike = Union[np.ndarray, Sequence[np.ndarray], "tuple[np.ndarray, np.ndarray]", str, "os.PathLike[str]", Mapping[str, Any]]
 MeshArrays = Tuple[np.ndarray, np.ndarray]  # vertices, triangles
-# (vertices, triangles), or a path, or {body: (vertices, triangles)} for a scene of several bodies.
-MeshLike = Union[MeshArrays, Mapping[int, MeshArrays], str, "os.PathLike[str]"]
+# (vertices, triangles), or a path, or {body: (vertices, triangles)} for a scene of several bodies; or a mesh of trimesh.
+MeshLike = Union[MeshArrays, Mapping[int, MeshArrays], str, "os.PathLike[str]", Any]
 
 OF_ARRAYS = ("thickness", "color", "uv")
 
@@ -33,7 +34,9 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
     """Creates a scene. If `strands` are arrays, `parameters` must contain `unit`, and may contain `up` and arrays for
     `thickness`, `color` and `uv`."""
     given = {name: value for name, value in parameters.items() if value is not None}
-    if is_path(strands):
+    if isinstance(strands, Mapping):
+        scene = Handle("tractrix_scene_parse", "tractrix_scene_destroy", _text_of(strands), None)
+    elif is_path(strands):
         scene = Handle("tractrix_scene_read", "tractrix_scene_destroy", bytes_of("strands", strands))
     else:
         look = given.pop("look", None)
@@ -48,6 +51,14 @@ def scene_of(strands: StrandsLike, mesh: MeshLike | None, deforms: bool, paramet
     for name, value in given.items():
         call("tractrix_scene_set", scene.value, -1, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
     return scene
+
+
+def _text_of(scene: Mapping[str, Any]) -> bytes:
+    """A scene file's text. Paths of pathlib and numbers of numpy may occur in it."""
+    try:
+        return json.dumps(scene, default=lambda value: os.fspath(value) if is_path(value) else value.tolist()).encode()
+    except (AttributeError, TypeError, ValueError) as error:
+        raise usage(f"strands: {error}: expected a dict with what a scene file may hold") from None
 
 
 def _add_strands(scene: Handle, strands: Any, given: dict[str, Any]) -> None:
@@ -86,6 +97,8 @@ def _set_meshes(scene: Handle, mesh: Any, deforms: bool, given: dict[str, Any], 
 
 
 def _mesh(name: str, mesh: Any, deforms: bool, unit: Any, up: Any, expected: str) -> Mesh:
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # of trimesh
+        mesh = mesh.vertices, mesh.faces
     if not isinstance(mesh, (tuple, list)) or len(mesh) != 2:
         raise usage(f"{name}: got {type(mesh).__name__}: expected {expected}")
     vertices = _arrays.numbers(f"{name}[0]", mesh[0], (None, 3))

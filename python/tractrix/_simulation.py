@@ -5,17 +5,20 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, Literal, Union
+import os
+import tempfile
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, List, Literal, NamedTuple, Union
 
 import numpy as np
 
 from . import _arrays
-from ._declarations import FOLLOWERS, GUIDES, Positions, View
+from ._declarations import FOLLOWERS, GUIDES, Layers, Positions, View
 from ._device import device
 from ._error import FAILED, error_of, usage
-from ._image import FORMATS, image_of
+from ._image import FORMATS, image_of, write_image
 from ._library import Handle, call, library, lock
 from ._pose import PoseLike, pose_of
+from ._progress import Watch
 from ._scene import MeshLike, StrandsLike, scene_of
 from ._values import bytes_of, text_of
 
@@ -36,10 +39,21 @@ def part_of(name: str) -> int:
     return PARTS[name]
 
 
+class Layered(NamedTuple):
+    """An image and data of its pixels: `coverage`, the share that hair covers; `depth` of the strand in front, m from the eye;
+    its `tangent` in the world, (H, W, 3); its number `strand`, as in EXR files of tractrix-render. Without a strand they are 0."""
+
+    image: np.ndarray
+    coverage: np.ndarray
+    depth: np.ndarray
+    tangent: np.ndarray
+    strand: np.ndarray
+
+
 class Simulation:
     """A simulation of hair. It starts at time 0; each `advance` simulates one frame.
 
-    `strands` is the path of a hair file or scene file, or arrays of root-first vertices: (S, V, 3), a list of (V, 3),
+    `strands` is the path of a hair file or scene file, a dict with what a scene file holds, or arrays of root-first vertices: (S, V, 3), a list of (V, 3),
     or (points, sizes). Arrays need `unit`. `mesh` is (vertices, triangles) or a path, or, for a scene of several
     bodies, a dict of (vertices, triangles) by the number of the body. With `deforms` you pass the vertices of the mesh
     to each `advance`. All other keywords are the parameters of tractrix-render (docs/options.md),
@@ -47,15 +61,32 @@ class Simulation:
     a vertex with the mean thickness has the radius `radius`), `color` (of each vertex: linear RGB, or linear RGB and
     opacity) and `uv` (of each root). Raises TractrixError.
 
+    `progress` is called during the warm-up (parameter `preroll`) with the share that is done, 0 to 1, on another thread; an
+    exception that it raises ends the warm-up, as does Ctrl-C.
+
     Use `with` or close() to free the simulation; otherwise it is freed when its last reference is gone."""
 
     def __init__(self, strands: StrandsLike, *, mesh: MeshLike | None = None, deforms: bool = False,
-                 **parameters: Unpack[Parameters]) -> None:
+                 progress: Callable[[float], Any] | None = None, **parameters: Unpack[Parameters]) -> None:
+        self._handle: Handle | None = None
         scene = scene_of(strands, mesh, deforms, parameters)
-        with lock:
-            self._handle: Handle | None = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
+        with lock, Watch(progress):
+            self._handle = Handle("tractrix_simulation_create", "tractrix_simulation_destroy", device().value, scene.value)
         scene.close()
         self._renderers: dict[Any, Handle] = {}
+
+    def __repr__(self) -> str:
+        return "<tractrix.Simulation, closed>" if self._handle is None else f"<tractrix.Simulation at {self.time:.6g} s>"
+
+    def _repr_png_(self) -> bytes | None:
+        """The picture that notebooks show."""
+        if self._handle is None:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "hair.png")
+            write_image(path, self.render((480, 480)))
+            with open(path, "rb") as file:
+                return file.read()
 
     def __enter__(self) -> Simulation:
         return self
@@ -91,11 +122,32 @@ class Simulation:
         with lock:
             return library().tractrix_simulation_time(self._pointer)
 
-    def set(self, **parameters: Unpack[Parameters]) -> None:
-        """Changes live parameters (`tractrix.parameters()[name].live`). They take effect at the next step or image."""
+    def set(self, *, section: int = -1, **parameters: Unpack[Parameters]) -> None:
+        """Changes live parameters (`tractrix.parameters()[name].live`). They take effect at the next step or image.
+        `section`: the section of hair, from 0, for parameters of sections; -1: all sections. An automatic exposure stays
+        as measured until `exposure` is set."""
         with lock:
             for name, value in parameters.items():
-                call("tractrix_simulation_set", self._pointer, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
+                call("tractrix_simulation_set_section", self._pointer, section, bytes_of("a parameter", name), bytes_of(name, text_of(name, value)))
+
+    def save(self) -> bytes:
+        """The state of the simulation. A simulation of an equal scene continues from it with `restore`, bit for bit. Raises
+        TractrixError(2) if you have moved the head, the mesh or a body."""
+        with lock:
+            state = Handle("tractrix_simulation_save", "tractrix_state_destroy", self._pointer)
+            size = ctypes.c_size_t()
+            address = library().tractrix_state_bytes(state.value, ctypes.byref(size))
+            content = ctypes.string_at(address, size.value)
+            state.close()
+        return content
+
+    def restore(self, state: bytes) -> None:
+        """Returns to a state that `save` gave: its time, and the hair as it was. Raises TractrixError(3) for a state of other
+        hair or solvers."""
+        with lock:
+            made = Handle("tractrix_state_create", "tractrix_state_destroy", state, len(state))
+            call("tractrix_simulation_restore", self._pointer, made.value)
+            made.close()
 
     def advance(self, head: PoseLike | None = None, *, mesh: np.ndarray | None = None) -> None:
         """Simulates one frame, which is speed / fps seconds of the scene (parameters `fps` and `speed`; `speed` is 1 by
@@ -153,6 +205,19 @@ class Simulation:
         float32 is linear light with premultiplied alpha. `view`: (world_to_eye, projection), two (4, 4) matrices for
         column vectors; default: the scene's camera. Automatic exposure is measured at the first image, and again
         whenever `size` or `dtype` differs from that of the previous image; with float32 it is 0."""
+        return self._render(size, dtype, view, None)
+
+    def render_layers(self, size: tuple[int, int] = (960, 960), *, dtype: Any = np.uint8,
+                      view: tuple[np.ndarray, np.ndarray] | None = None) -> Layered:
+        """The image that `render` gives, and data of each of its pixels: coverage, depth, tangent and strand."""
+        width, height = (int(length) for length in _arrays.numbers("size", size, (2,), np.int64))
+        shape = max(height, 0), max(width, 0)
+        arrays = [np.empty(shape, np.float32), np.empty(shape, np.float32), np.empty((*shape, 3), np.float32), np.empty(shape, np.uint32)]
+        coverage, depth, tangent = (_arrays.pointer(array, ctypes.c_float) for array in arrays[:3])
+        layers = Layers(coverage=coverage, depth=depth, tangent=tangent, strand=_arrays.pointer(arrays[3], ctypes.c_uint32))
+        return Layered(self._render(size, dtype, view, layers), *arrays)
+
+    def _render(self, size: tuple[int, int], dtype: Any, view: tuple[np.ndarray, np.ndarray] | None, layers: Layers | None) -> np.ndarray:
         try:
             kind = np.dtype(dtype)
         except TypeError:
@@ -167,8 +232,8 @@ class Simulation:
                 self._renderers[key] = Handle("tractrix_renderer_create", "tractrix_renderer_destroy", self._pointer,
                                               width, height, FORMATS[kind])
             pixels = np.empty((height, width, 4), kind)
-            call("tractrix_render", self._renderers[key].value, None if view is None else ctypes.byref(_view_of(view)),
-                 ctypes.byref(image_of(pixels)))
+            call("tractrix_render_layers", self._renderers[key].value, None if view is None else ctypes.byref(_view_of(view)),
+                 ctypes.byref(image_of(pixels)), None if layers is None else ctypes.byref(layers))
         return pixels
 
 

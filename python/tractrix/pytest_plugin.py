@@ -62,7 +62,8 @@ class ImageCheck:
 
     def check(self, image: ImageLike, *, name: str | None = None, mask: ImageLike | None = None,
               pixel_tolerance: float | None = None, max_failing_percent: float | None = None,
-              max_flip: float | None = None) -> None:
+              max_flip: float | None = None, max_difference: float | None = None,
+              max_local_difference: float | None = None) -> None:
         """Fails unless `image` matches its golden within the limits of tractrix.compare. Without limits the two must be
         equal. The golden is goldens/MODULE/TEST.png in the folder of the test file, TEST-NAME.png if `name` is given,
         and .exr for an image of floats. A missing golden is a failure; only --tractrix-update writes goldens."""
@@ -87,8 +88,8 @@ class ImageCheck:
         if old.dtype != new.dtype:
             self._fail(golden, new, f"{new.dtype}, but the golden has {old.dtype}")
         result = compare(new, old, mask=mask, pixel_tolerance=pixel_tolerance, max_failing_percent=max_failing_percent,
-                         max_flip=max_flip)
-        if not result.same:
+                         max_flip=max_flip, max_difference=max_difference, max_local_difference=max_local_difference)
+        if not result.within:
             self._fail(golden, new, f"{result.failing} of {result.compared} pixels differ, at most by {result.largest:.3g} levels at "
                                     f"{result.at[0]},{result.at[1]}, FLIP {result.flip:.4f}")
 

@@ -100,9 +100,11 @@ static void put_row(FILE *stream, const Pair *pair, const Verdict *verdict)
             pair->level && pair->has_a ? " (" : "",
             pair->level && pair->has_a ? LEVEL_NAMES[pair->level] : "",
             pair->level && pair->has_a ? ")" : "");
+    char flip[32] = "";
+    if (figures->figures & COMPARE_FLIP) snprintf(flip, sizeof flip, "%.4g", figures->flip);
     if (verdict->measured)
-        fprintf(stream, "%.4g | %.4g | %.6g | %llu (%.3g %%) | ", figures->flip, figures->rmse,
-                figures->ssim, (unsigned long long)figures->failing,
+        fprintf(stream, "%s | %.4g | %.4g | %llu (%.3g %%) | ", flip, figures->rmse, figures->local,
+                (unsigned long long)figures->failing,
                 100 * (double)figures->failing / (double)figures->compared);
     else
         fputs("| | | | ", stream);
@@ -115,12 +117,25 @@ static void put_row(FILE *stream, const Pair *pair, const Verdict *verdict)
 
 static void put_limits(FILE *stream, const char *level, const CompareLimits *limits)
 {
-    const char *unit = limits->max_failing_percent ? " %" : "";
+    const char *unit = limits->max_failing_percent ? " %" : "", *between = "";
+    const struct {
+        bool matters;
+        const char *name;
+        double most;
+    } others[] = {{limits->difference_matters, "largest difference", limits->max_difference},
+                  {limits->local_matters, "local difference", limits->max_local},
+                  {limits->flip_matters, "FLIP", limits->max_flip}};
     fprintf(stream, "\nLimits%s%s:", *level ? " of the " : "", level);
-    if (limits->pixels_matter)
-        fprintf(stream, " pixel tolerance %g, failing pixels %g%s%s", limits->pixel_tolerance,
-                limits->max_failing, unit, limits->flip_matters ? "," : "");
-    if (limits->flip_matters) fprintf(stream, " FLIP %g", limits->max_flip);
+    if (limits->pixels_matter) {
+        fprintf(stream, " pixel tolerance %g, failing pixels %g%s", limits->pixel_tolerance,
+                limits->max_failing, unit);
+        between = ",";
+    }
+    for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {
+        if (!others[i].matters) continue;
+        fprintf(stream, "%s %s %g", between, others[i].name, others[i].most);
+        between = ",";
+    }
     fputs(".\n", stream);
 }
 
@@ -136,11 +151,11 @@ static void put_summary(FILE *stream, const PairList *list, const Verdict *verdi
         put_limits(stream, LEVEL_NAMES[level], &limits[level]);
     fputc('\n', stream);
     if (wanted)
-        fputs("| image | result | FLIP | RMSE | SSIM | failing pixels | |\n"
+        fputs("| image | result | FLIP | RMSE | local difference | failing pixels | |\n"
               "| --- | --- | ---: | ---: | ---: | ---: | --- |\n",
               stream);
     for (size_t i = 0; i < list->count && rows < MOST_ROWS; ++i) {
-        if (verdicts[i].outcome == OUTCOME_SAME) continue;
+        if (!verdict_is_listed(&verdicts[i])) continue;
         put_row(stream, &list->pairs[i], &verdicts[i]);
         ++rows;
     }

@@ -101,7 +101,7 @@ Result junit_write(const char *path, const PairList *list, const Verdict *verdic
     VerdictTally tally = verdict_tally(list, verdicts);
     size_t cases = list->count;
     for (size_t i = 0; i < list->count; ++i)
-        cases -= options->only_failures && verdicts[i].outcome == OUTCOME_SAME;
+        cases -= options->only_failures && !verdict_is_listed(&verdicts[i]);
     snprintf(sums, sizeof sums,
              "name=\"tractrix-compare\" tests=\"%zu\" failures=\"%d\" errors=\"%d\" "
              "skipped=\"0\" time=\"%.3f\"",
@@ -110,7 +110,7 @@ Result junit_write(const char *path, const PairList *list, const Verdict *verdic
     fprintf(file.stream, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites %s>\n", sums);
     fprintf(file.stream, "  <testsuite %s timestamp=\"%s\">\n", sums, timestamp);
     for (size_t i = 0; i < list->count; ++i)
-        if (!options->only_failures || verdicts[i].outcome != OUTCOME_SAME)
+        if (!options->only_failures || verdict_is_listed(&verdicts[i]))
             put_case(file.stream, &list->pairs[i], &verdicts[i]);
     fprintf(file.stream, "  </testsuite>\n</testsuites>\n");
     return outfile_commit(&file, error);

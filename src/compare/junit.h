@@ -7,7 +7,7 @@
 #include <time.h>
 
 typedef struct JunitOptions {
-    bool only_failures; // no cases for images that are the same
+    bool only_failures; // no cases for images that pass
     double seconds;     // of the whole run
     time_t started;
 } JunitOptions;

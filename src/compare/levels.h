@@ -25,6 +25,10 @@ const char *level_class(const char *platform);
 // Whether tractrix-render --platform may print this name: neither a path nor a class.
 bool level_is_platform(const char *name);
 
+// Whether a subfolder of GOLDENS with this name has the goldens of a class or of a platform: its
+// name is that of a class, or begins like a platform's.
+bool level_has_folder(const char *name);
+
 // The folder's name in GOLDENS; "": GOLDENS itself.
 const char *level_folder(Level level, const char *platform);
 
@@ -35,5 +39,5 @@ bool level_counts(Level level, const char *platform, bool any);
 // The level where a new golden is stored: for all platforms by CPUs, in the class by GPUs.
 Level level_of_new(const char *platform);
 
-// The default limits: equal images; 2 levels, 0.5 %; 8 levels, 2 %.
+// The default limits: equal images for the platform, else those of the table in levels.c.
 void level_set_limits(CompareLimits *limits, Level level);

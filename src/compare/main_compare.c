@@ -26,11 +26,13 @@
 #include <unistd.h>
 
 typedef struct Command {
-    double pixel_tolerance, max_flip, ppd; // the first two: negative if not given
+    double pixel_tolerance, max_difference, max_local, max_flip; // negative if not given
+    double ppd;
     const char *max_failing, *mask, *heat_map, *sheet, *json, *junit, *unrendered, *html;
     const char *commands, *only, *platform, *class_limits, *common_limits;
-    bool github, only_failures, update, any_platform, quiet;
-    int jobs, shrink, level; // level: of --update; LEVEL_NONE: the level of the golden in use
+    bool github, only_failures, update, any_platform, quiet, all_metrics;
+    bool exact_if_alike[LEVELS]; // VerdictOptions
+    int jobs, shrink, level;     // level: of --update; LEVEL_NONE: the level of the golden in use
     const char *a, *b;
     CompareLimits limits[LEVELS];
     char *line; // the command line before the parser changes its order; owned
@@ -44,20 +46,29 @@ static const Option OPTIONS[] = {
      "[default 0]"},
     {"max-failing-pixels", 0, OPTION_STRING, AT(max_failing), "N|P%", 0, 0,
      "number or percentage of the pixels of an image that may fail [default 0]"},
+    {"max-difference", 0, OPTION_REAL, AT(max_difference), "LEVELS", 0, 255,
+     "no pixel may differ by more than this in any channel, however few pixels fail"},
+    {"max-local-difference", 0, OPTION_REAL, AT(max_local), "LEVELS", 0, 255,
+     "largest mean difference of a channel over any 16 x 16 pixels; lighter and darker pixels "
+     "cancel out"},
     {"max-flip", 0, OPTION_REAL, AT(max_flip), "X", 0, 1,
-     "largest mean FLIP error of an image; without the two options above it is the only limit"},
+     "largest mean FLIP error of an image; this and the two options above can be the only limits"},
+    {"all-metrics", 0, OPTION_SWITCH, AT(all_metrics), NULL, 0, 0,
+     "also compute SSIM, and FLIP where no limit and no heat map needs it"},
     {"platform", 0, OPTION_STRING, AT(platform), "NAME", 0, 0,
      "A is a folder of goldens by platform: the golden of an image is the first that exists in "
      "A/NAME/, in A/CLASS/ (cpu, nvidia, amd, intel, gpu) and in A; tractrix-render --platform "
-     "prints NAME. Default limits: in A/NAME/ images must be equal; in A/CLASS/ 2 levels and 0.5 % "
-     "failing pixels; in A 8 levels and 2 %"},
+     "prints NAME. Without limits, images must be equal in A/NAME/, and if both files say that the "
+     "same driver and processor drew them; otherwise A/CLASS/ and A have limits for differences in "
+     "rounding"},
     {"any-platform", 0, OPTION_SWITCH, AT(any_platform), NULL, 0, 0,
      "compare images of GPUs with goldens in A itself, too"},
     {"level", 0, OPTION_WORD, AT(level), "used|platform|class|common", 0, 0,
      "goldens that --update writes; used: the goldens that were compared; new goldens are common "
      "if a CPU drew them, and of the class if a GPU did [default used]"},
     {"class-limits", 0, OPTION_STRING, AT(class_limits), "LEVELS,N|P%", 0, 0,
-     "--pixel-tolerance and --max-failing-pixels for goldens in A/CLASS/ only"},
+     "--pixel-tolerance and --max-failing-pixels for goldens in A/CLASS/ only, instead of the "
+     "default limits"},
     {"common-limits", 0, OPTION_STRING, AT(common_limits), "LEVELS,N|P%", 0, 0,
      "--pixel-tolerance and --max-failing-pixels for goldens in A itself only"},
     {"ppd", 0, OPTION_REAL, AT(ppd), "X", 1, 1000,
@@ -79,13 +90,15 @@ static const Option OPTIONS[] = {
     {"github", 0, OPTION_SWITCH, AT(github), NULL, 0, 0,
      "print annotations for GitHub Actions, and append a summary to $GITHUB_STEP_SUMMARY"},
     {"only-failures", 0, OPTION_SWITCH, AT(only_failures), NULL, 0, 0,
-     "list only images that are not the same, in lines and reports; counts still cover all images"},
+     "list only images that fail, in lines and reports; counts still cover all images"},
     {"unrendered", 0, OPTION_STRING, AT(unrendered), "FILE", 0, 0,
      "file with lines NAME: REASON for images that could not be rendered, for the reports"},
     {"commands", 0, OPTION_STRING, AT(commands), "FILE", 0, 0,
      "file with lines NAME: COMMAND, the commands that rendered the images B, for the reports"},
     {"only", 0, OPTION_STRING, AT(only), "NAME", 0, 0,
-     "compare only the image of this name; %d or %04d in the name stands for any number"},
+     "compare only the image of this name, such as walk/0001.png; %d or %04d in the name stands "
+     "for "
+     "any number"},
     {"update", 0, OPTION_SWITCH, AT(update), NULL, 0, 0,
      "accept B: copy it over A where the two differ or A is missing"},
     {"shrink", 0, OPTION_WHOLE, AT(shrink), "PX", 1, 16384,
@@ -97,9 +110,11 @@ static const Option OPTIONS[] = {
 
 static const char *const NOTES[] = {
     "A and B are two images (PNG of 8 or 16 bits, PFM, EXR), two folders, whose .png, .pfm and "
-    ".exr files are "
-    "paired by name, or two patterns with %d or %04d, paired by number. Images of different sizes "
+    ".exr files are paired by name, also in subfolders, or two patterns with %d or %04d, paired by "
+    "number. Images of different sizes "
     "and images without a partner count as different.",
+    "Results: `same` has no visible difference; `within limits` differs, but passes; `different` "
+    "fails.",
     "RMSE and PSNR are of red, green and blue in sRGB levels of 0 to 255. SSIM is that of Wang et "
     "al. 2004 on luma. FLIP is that of Andersson et al. 2020: 0 looks the same, 1 is the largest "
     "difference. Equal images score exactly 0 (SSIM 1). Images with alpha are compared over black "
@@ -109,7 +124,7 @@ static const char *const NOTES[] = {
     "each mask must belong to an image.",
     NULL};
 
-static const char *const STATUS[][2] = {{"0", "equal within the limits"},
+static const char *const STATUS[][2] = {{"0", "all images are the same or within the limits"},
                                         {"1", "different or missing; or a file can't be written"},
                                         {"2", "wrong usage"},
                                         {"3", "an image, a mask or a folder can't be read"},
@@ -178,17 +193,28 @@ static Result read_limits(Command *command, Error *error)
     CompareLimits limits = compare_limits_default();
     bool pixels = command->pixel_tolerance >= 0 || command->max_failing;
     limits.pixels_per_degree = command->ppd;
+    limits.figures = command->all_metrics ? COMPARE_SSIM | COMPARE_FLIP : 0;
+    limits.difference_matters = command->max_difference >= 0;
+    limits.max_difference = command->max_difference;
+    limits.local_matters = command->max_local >= 0;
+    limits.max_local = command->max_local;
     limits.flip_matters = command->max_flip >= 0;
     limits.max_flip = command->max_flip;
-    limits.pixels_matter = !limits.flip_matters || pixels;
+    bool others = limits.difference_matters || limits.local_matters || limits.flip_matters;
+    limits.pixels_matter = pixels || !others;
     if (command->pixel_tolerance >= 0) limits.pixel_tolerance = command->pixel_tolerance;
     if (command->max_failing)
         TRY(read_failing(&limits, "--max-failing-pixels", command->max_failing, error));
     for (Level level = LEVEL_NONE; level < LEVELS; ++level) {
         command->limits[level] = limits;
-        if (level && !pixels && !limits.flip_matters)
-            level_set_limits(&command->limits[level], level);
+        if (!level || pixels || others) continue;
+        level_set_limits(&command->limits[level], level);
+        command->exact_if_alike[level] = true;
     }
+    if (command->class_limits) command->limits[LEVEL_CLASS] = limits;
+    if (command->common_limits) command->limits[LEVEL_COMMON] = limits;
+    command->exact_if_alike[LEVEL_CLASS] &= !command->class_limits;
+    command->exact_if_alike[LEVEL_COMMON] &= !command->common_limits;
     if (command->class_limits)
         TRY(read_level_limits(&command->limits[LEVEL_CLASS], "--class-limits",
                               command->class_limits, error));
@@ -314,6 +340,8 @@ static Result parse(Command *command, int argc, char **argv, bool *done, Error *
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     int first;
     *command = (Command){.pixel_tolerance = -1,
+                         .max_difference = -1,
+                         .max_local = -1,
                          .max_flip = -1,
                          .ppd = compare_limits_default().pixels_per_degree,
                          .jobs = cores < 1      ? 1
@@ -374,9 +402,10 @@ static void judge(Work *work, size_t i)
     char *heat_map = name_drawing(work, command->heat_map, pair);
     char *sheet = name_drawing(work, command->sheet, pair);
     VerdictOptions options = {.limits = command->limits[pair->level],
+                              .exact_if_alike = command->exact_if_alike[pair->level],
                               .heat_map = heat_map,
                               .sheet = sheet,
-                              .draw_same = !work->list->many,
+                              .draw_all = !work->list->many,
                               .update = command->update,
                               .mask = work->mask.nearest ? &work->mask : NULL,
                               .map = work->pages ? &work->pages[i].map : NULL};
@@ -438,7 +467,7 @@ static Result print_verdicts(Work *work, Error *error)
             progress_clear(&progress);
             return error_set(error, RESULT_INTERRUPTED, "interrupted");
         }
-        bool listed = !work->command->only_failures || work->verdicts[i].outcome != OUTCOME_SAME;
+        bool listed = !work->command->only_failures || verdict_is_listed(&work->verdicts[i]);
         if (!work->command->quiet && listed) {
             progress_clear(&progress);
             verdict_print(&work->verdicts[i], &work->list->pairs[i], lines(work->command));

@@ -22,7 +22,8 @@ static const char *const KIND_NAMES[] = {"a file", "a folder", "a pattern"};
 typedef struct Side {
     const char *text;
     Kind kind;
-    bool missing; // does not exist, which is allowed for A with --update
+    bool missing;                      // does not exist, which is allowed for A with --update
+    bool (*skips)(const char *folder); // subfolders with other images; NULL: none
     Target target;
     size_t count; // sides[0] only: pairs listed so far, sorted by name
 } Side;
@@ -107,35 +108,122 @@ static Result add_pair(PairList *list, const Side sides[2], const char *name, in
     return pair->name && pair->b ? RESULT_OK : fail_memory(error);
 }
 
-static DIR *open_folder(const Side *side)
+// Names of images in a folder and its subfolders, relative to the folder: "walk/0001.png"; or the
+// names that match a pattern, in its folder alone.
+typedef struct Names {
+    char **list;
+    int *frames; // the numbers; of patterns
+    size_t count;
+} Names;
+
+static void names_destroy(Names *names)
+{
+    for (size_t i = 0; i < names->count; ++i) free(names->list[i]);
+    free(names->list);
+    free(names->frames);
+    *names = (Names){0};
+}
+
+static Result add_name(Names *names, const char *name, int frame, Error *error)
+{
+    char **list = realloc(names->list, (names->count + 1) * sizeof *list);
+    if (list) names->list = list;
+    int *frames = realloc(names->frames, (names->count + 1) * sizeof *frames);
+    if (frames) names->frames = frames;
+    char *copy = list && frames ? strdup(name) : NULL;
+    if (!copy) return fail_memory(error);
+    list[names->count] = copy;
+    frames[names->count++] = frame;
+    return RESULT_OK;
+}
+
+static char *folder_of(const Side *side)
 {
     const char *before = side->kind == KIND_PATTERN ? side->target.before : side->text;
     const char *slash = strrchr(before, '/');
-    if (side->kind == KIND_FOLDER) return opendir(before);
-    if (!slash) return opendir(".");
-    char *folder = strndup(before, (size_t)(slash - before) + 1);
-    DIR *directory = folder ? opendir(folder) : NULL;
+    if (side->kind == KIND_FOLDER) return strdup(before);
+    return slash ? strndup(before, (size_t)(slash - before) + 1) : strdup(".");
+}
+
+static Result read_folder(Names *names, const Side *side, const char *path, const char *prefix,
+                          Error *error);
+
+// An entry of the folder `path`, whose name relative to the side begins with `prefix`.
+static Result read_entry(Names *names, const Side *side, const char *path, const char *prefix,
+                         const char *entry, Error *error)
+{
+    // Deeper folders are a loop of links.
+    enum { MOST_SLASHES = 32 };
+    struct stat status;
+    int frame = 0, slashes = 0;
+    char *name = NULL, *inner = NULL;
+    if (side->kind == KIND_PATTERN)
+        return target_read_number(&side->target, entry, &frame)
+                   ? add_name(names, entry, frame, error)
+                   : RESULT_OK;
+    if (entry[0] == '.') return RESULT_OK;
+    if (asprintf(&name, "%s%s", prefix, entry) < 0) return fail_memory(error);
+    if (asprintf(&inner, "%s/%s", path, entry) < 0) {
+        free(name);
+        return fail_memory(error);
+    }
+    Result result = RESULT_OK;
+    if (stat(inner, &status) == 0 && S_ISDIR(status.st_mode)) {
+        for (const char *at = name; *at; ++at) slashes += *at == '/';
+        char *deeper = NULL;
+        if (slashes >= MOST_SLASHES)
+            result = error_set(error, RESULT_BAD_INPUT, "%s: folders in each other: expected %d",
+                               inner, MOST_SLASHES);
+        else if (asprintf(&deeper, "%s/", name) < 0)
+            result = fail_memory(error);
+        else if (!prefix[0] && side->skips && side->skips(entry))
+            result = RESULT_OK;
+        else
+            result = read_folder(names, side, inner, deeper, error);
+        free(deeper);
+    } else if (is_image(entry)) {
+        result = add_name(names, name, 0, error);
+    }
+    free(name);
+    free(inner);
+    return result;
+}
+
+static Result read_folder(Names *names, const Side *side, const char *path, const char *prefix,
+                          Error *error)
+{
+    DIR *directory = opendir(path);
+    if (!directory && errno == ENOENT && side->missing && !*prefix) return RESULT_OK;
+    if (!directory)
+        return error_set(error, RESULT_BAD_INPUT, "%s: %s", *prefix ? path : side->text,
+                         strerror(errno));
+    Result result = RESULT_OK;
+    const struct dirent *entry;
+    while (result == RESULT_OK && (entry = readdir(directory)))
+        result = read_entry(names, side, path, prefix, entry->d_name, error);
+    closedir(directory);
+    return result;
+}
+
+// To be destroyed, also after a failure.
+static Result read_names(Names *names, const Side *side, Error *error)
+{
+    char *folder = folder_of(side);
+    *names = (Names){0};
+    Result result = folder ? read_folder(names, side, folder, "", error) : fail_memory(error);
     free(folder);
-    return directory;
+    return result;
 }
 
 // Lists the images in the folder of `side` and sorts all pairs. `from`: 0 if these images are A, 1
 // if they are B, -1 for neither.
 static Result list_side(PairList *list, Side sides[2], const Side *side, int from, Error *error)
 {
-    DIR *directory = open_folder(side);
-    if (!directory && errno == ENOENT && side->missing && from == 0) return RESULT_OK;
-    if (!directory)
-        return error_set(error, RESULT_BAD_INPUT, "%s: %s", side->text, strerror(errno));
-    Result result = RESULT_OK;
-    const struct dirent *entry;
-    while (result == RESULT_OK && (entry = readdir(directory))) {
-        int frame = 0;
-        if (side->kind == KIND_FOLDER ? is_image(entry->d_name)
-                                      : target_read_number(&side->target, entry->d_name, &frame))
-            result = add_pair(list, sides, entry->d_name, frame, from, error);
-    }
-    closedir(directory);
+    Names names;
+    Result result = read_names(&names, side, error);
+    for (size_t i = 0; i < names.count && result == RESULT_OK; ++i)
+        result = add_pair(list, sides, names.list[i], names.frames[i], from, error);
+    names_destroy(&names);
     sides[0].count = list->count;
     if (list->count) qsort(list->pairs, list->count, sizeof *list->pairs, order);
     return result;
@@ -147,8 +235,10 @@ static Result list_side(PairList *list, Side sides[2], const Side *side, int fro
 static Side side_of_level(const Side *goldens, Level level, const char *platform, char **text)
 {
     *text = place_of(goldens, level_folder(level, platform), 0);
-    return (Side){
-        .text = *text, .kind = KIND_FOLDER, .missing = goldens->missing || level != LEVEL_COMMON};
+    return (Side){.text = *text,
+                  .kind = KIND_FOLDER,
+                  .missing = goldens->missing || level != LEVEL_COMMON,
+                  .skips = level == LEVEL_COMMON ? level_has_folder : NULL};
 }
 
 static Result list_levels(PairList *list, Side sides[2], const PairOptions *options, Error *error)
@@ -225,8 +315,11 @@ static Side side_of_name(const char *name)
 static bool is_of(const Side *named, const Pair *pair)
 {
     int frame;
-    return named->kind == KIND_PATTERN ? target_read_number(&named->target, pair->name, &frame)
-                                       : strcmp(named->text, pair->name) == 0;
+    if (named->kind != KIND_PATTERN) return strcmp(named->text, pair->name) == 0;
+    const char *before = named->target.before, *slash = strrchr(before, '/');
+    size_t folder = slash ? (size_t)(slash - before) + 1 : 0;
+    return strncmp(pair->name, before, folder) == 0 &&
+           target_read_number(&named->target, pair->name + folder, &frame);
 }
 
 static Result give_text(char **to, const char *text, Error *error)
@@ -366,8 +459,9 @@ static Result give_mask(PairList *list, const Side *masks, const char *name, int
     bool found = false;
     for (size_t i = 0; i < list->count; ++i) {
         Pair *pair = &list->pairs[i];
-        if (masks->kind == KIND_PATTERN ? pair->frame != frame
-                                        : !have_one_stem(name, file_name(pair->a)))
+        if (masks->kind == KIND_PATTERN
+                ? pair->frame != frame
+                : !have_one_stem(name, list->many ? pair->name : file_name(pair->a)))
             continue;
         if (pair->mask)
             return error_set(error, RESULT_BAD_INPUT,
@@ -385,25 +479,15 @@ static Result give_mask(PairList *list, const Side *masks, const char *name, int
 
 static Result give_masks(PairList *list, const Side *masks, bool all, Error *error)
 {
-    DIR *directory = open_folder(masks);
-    if (!directory)
-        return error_set(error, RESULT_BAD_INPUT, "%s: %s", masks->text, strerror(errno));
-    Result result = RESULT_OK;
-    const struct dirent *entry;
-    size_t count = 0;
-    while (result == RESULT_OK && (entry = readdir(directory))) {
-        int frame = 0;
-        if (masks->kind == KIND_FOLDER ? !is_image(entry->d_name)
-                                       : !target_read_number(&masks->target, entry->d_name, &frame))
-            continue;
-        ++count;
-        result = give_mask(list, masks, entry->d_name, frame, all, error);
-    }
-    closedir(directory);
-    if (result == RESULT_OK && count == 0)
-        return error_set(error, RESULT_BAD_INPUT,
-                         "%s: no masks: expected images in this folder or of this pattern",
-                         masks->text);
+    Names names;
+    Result result = read_names(&names, masks, error);
+    if (result == RESULT_OK && names.count == 0)
+        result = error_set(error, RESULT_BAD_INPUT,
+                           "%s: no masks: expected images in this folder or of this pattern",
+                           masks->text);
+    for (size_t i = 0; i < names.count && result == RESULT_OK; ++i)
+        result = give_mask(list, masks, names.list[i], names.frames[i], all, error);
+    names_destroy(&names);
     return result;
 }
 

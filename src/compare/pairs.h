@@ -12,7 +12,8 @@
 #include <stddef.h>
 
 typedef struct Pair {
-    char *name;        // displayed: the file's name in a folder or sequence, otherwise b
+    char *name;        // displayed: the file's name in a folder or sequence, such as
+                       // "walk/0001.png", otherwise b
     char *a, *b;       // paths of existing or missing files
     bool has_a, has_b; // whether they exist
     int frame;         // the number, in patterns
@@ -45,7 +46,8 @@ typedef struct PairOptions {
 } PairOptions;
 
 // `a` and `b` are both files; or both folders, whose visible .png, .pfm and .exr files are paired
-// by name, as are .jpg and .jpeg files, which can't be compared; or both patterns with %d or %04d
+// by name, also those in subfolders ("walk/0001.png"), as are .jpg and .jpeg files, which can't be
+// compared; or both patterns with %d or %04d
 // in the file's name, as for tractrix-render -o, whose files are paired by number. If only one of
 // the two exists, the pair lacks the other. RESULT_USAGE for mixed kinds, RESULT_BAD_INPUT if a
 // folder can't be read or there is no image at all. Files are not opened.

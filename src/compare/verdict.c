@@ -17,9 +17,15 @@
 #include <string.h>
 
 static const char *const OUTCOME_NAMES[OUTCOME_COUNT] = {
-    "same", "different", "size mismatch", "new", "missing", "unrendered", "unreadable", "failed"};
+    "same",    "within limits", "different",  "size mismatch", "new",
+    "missing", "unrendered",    "unreadable", "failed"};
 
 // --- One pair.
+
+static bool is_passed(const Verdict *verdict)
+{
+    return verdict->outcome == OUTCOME_SAME || verdict->outcome == OUTCOME_WITHIN;
+}
 
 static void set_outcome(Verdict *verdict, Outcome outcome, const Error *error)
 {
@@ -59,7 +65,7 @@ static void drop_reference(Verdict *verdict, const Pair *pair)
 {
     Error error;
     verdict->dropped = outfile_remove(pair->a, &error) == RESULT_OK;
-    verdict->updated |= verdict->dropped && verdict->outcome != OUTCOME_SAME;
+    verdict->updated |= verdict->dropped && !is_passed(verdict);
     if (!verdict->dropped) set_outcome(verdict, OUTCOME_FAILED, &error);
 }
 
@@ -68,7 +74,7 @@ static void drop_reference(Verdict *verdict, const Pair *pair)
 // case A is compared with the fallback.
 static void update(Verdict *verdict, const Pair *pair, const Image *b)
 {
-    bool same = verdict->outcome == OUTCOME_SAME;
+    bool same = is_passed(verdict);
     Image a = {0};
     bool known =
         !same || (pair->fallback && float_image_read_image(&a, pair->a, NULL) == RESULT_OK);
@@ -100,7 +106,7 @@ static Result draw(char **written, const char *path, bool sheet, const Image *a,
 static Result keep_map(Bytes *png, float *map, const CompareResult *figures, Error *error)
 {
     Image image = {0};
-    if (!png || !(figures->flip_most > 0)) return RESULT_OK;
+    if (!png || figures->equal) return RESULT_OK;
     heat_map_round(map, (size_t)figures->width * (size_t)figures->height);
     Result result = heat_map_create(&image, map, figures->width, figures->height, error);
     THEN(result, png_encode_palette(&image, png, error));
@@ -108,17 +114,40 @@ static Result keep_map(Bytes *png, float *map, const CompareResult *figures, Err
     return result;
 }
 
-static Result measure(Verdict *verdict, float *map, const Image *a, const Image *b,
+// Whether the same renderer, driver and processor drew both images, as the files say.
+static bool are_alike(const Pair *pair)
+{
+    static const char *const KEYS[] = {"Renderer", "Driver", "CPU"};
+    ImageTexts texts[2] = {{0}};
+    bool alike = float_image_read_texts(&texts[0], pair->a, NULL) == RESULT_OK &&
+                 float_image_read_texts(&texts[1], pair->b, NULL) == RESULT_OK &&
+                 image_texts_find(&texts[0], KEYS[0]);
+    for (size_t i = 0; i < sizeof KEYS / sizeof *KEYS && alike; ++i) {
+        const char *a = image_texts_find(&texts[0], KEYS[i]),
+                   *b = image_texts_find(&texts[1], KEYS[i]);
+        alike = strcmp(a ? a : "", b ? b : "") == 0;
+    }
+    for (int i = 0; i < 2; ++i) image_texts_destroy(&texts[i]);
+    return alike;
+}
+
+static Result measure(Verdict *verdict, float *map, const Pair *pair, const Image images[2],
                       const Mask *mask, const VerdictOptions *options, Error *error)
 {
-    TRY(compare_images(&verdict->figures, map, a, b, mask, &options->limits, error));
+    const Image *a = &images[0], *b = &images[1];
+    CompareResult *figures = &verdict->figures;
+    TRY(compare_images(figures, map, a, b, mask, &options->limits, error));
+    verdict->exact = !figures->equal && options->exact_if_alike && are_alike(pair);
+    if (verdict->exact) figures->within = false;
     verdict->measured = true;
-    verdict->outcome = verdict->figures.same ? OUTCOME_SAME : OUTCOME_DIFFERENT;
-    if (!verdict->figures.same || options->draw_same) {
+    verdict->outcome = figures->equal    ? OUTCOME_SAME
+                       : figures->within ? OUTCOME_WITHIN
+                                         : OUTCOME_DIFFERENT;
+    if (!figures->within || options->draw_all) {
         TRY(draw(&verdict->heat_map, options->heat_map, false, a, b, map, error));
         TRY(draw(&verdict->sheet, options->sheet, true, a, b, map, error));
     }
-    return keep_map(options->map, map, &verdict->figures, error);
+    return keep_map(options->map, map, figures, error);
 }
 
 // The pair's own mask or the mask of all pairs; `mask` is NULL without any. Destroy `own`.
@@ -149,9 +178,11 @@ static void measure_all(Verdict *verdict, const Pair *pair, const Image *a, cons
         set_unreadable(verdict, result, &error);
         verdict->mask_is_wrong = true;
     } else {
-        map = malloc((size_t)a->width * (size_t)a->height * sizeof *map);
-        result = map ? measure(verdict, map, a, b, mask, options, &error)
-                     : error_set(&error, RESULT_FAILED, "no memory for a map");
+        bool needs_map = options->heat_map || options->sheet || options->map;
+        if (needs_map) map = malloc((size_t)a->width * (size_t)a->height * sizeof *map);
+        const Image images[2] = {*a, *b};
+        result = map || !needs_map ? measure(verdict, map, pair, images, mask, options, &error)
+                                   : error_set(&error, RESULT_FAILED, "no memory for a map");
         if (result != RESULT_OK) set_outcome(verdict, OUTCOME_FAILED, &error);
     }
     free(map);
@@ -222,7 +253,12 @@ void verdict_destroy(Verdict *verdict)
 
 bool verdict_is_good(const Verdict *verdict)
 {
-    return verdict->outcome == OUTCOME_SAME || verdict->updated;
+    return is_passed(verdict) || verdict->updated;
+}
+
+bool verdict_is_listed(const Verdict *verdict)
+{
+    return !is_passed(verdict);
 }
 
 const char *verdict_word(const Verdict *verdict)
@@ -238,7 +274,9 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
     fprintf(stream, "%s: %s: %s%s%s", quote(pair->name).text, OUTCOME_NAMES[verdict->outcome],
             figures, both ? "; " : "", quote(verdict->text).text);
     if (pair->level && pair->has_a)
-        fprintf(stream, "; golden: %s (%s)", quote(pair->a).text, LEVEL_NAMES[pair->level]);
+        fprintf(stream, "; golden: %s (%s)%s", quote(pair->a).text, LEVEL_NAMES[pair->level],
+                verdict->exact ? ", from the same driver and processor: expected equal pixels"
+                               : "");
     if (verdict->dropped)
         fprintf(stream, "; needs no golden of its own, because %s is equal",
                 quote(pair->fallback).text);
@@ -249,9 +287,16 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream)
 
 // --- All pairs.
 
+static double badness(const Verdict *verdict, bool by_flip)
+{
+    return by_flip ? verdict->figures.flip : verdict->figures.rmse;
+}
+
 VerdictTally verdict_tally(const PairList *list, const Verdict *verdicts)
 {
-    VerdictTally tally = {.worst = -1};
+    VerdictTally tally = {.worst = -1, .flip_known = true};
+    for (size_t i = 0; i < list->count; ++i)
+        tally.flip_known &= !verdicts[i].measured || (verdicts[i].figures.figures & COMPARE_FLIP);
     for (size_t i = 0; i < list->count; ++i) {
         const Verdict *verdict = &verdicts[i];
         bool is_error =
@@ -261,7 +306,8 @@ VerdictTally verdict_tally(const PairList *list, const Verdict *verdicts)
         tally.bad += !verdict_is_good(verdict);
         tally.errors += !verdict_is_good(verdict) && is_error;
         if (verdict->measured &&
-            (tally.worst < 0 || verdict->figures.flip > verdicts[tally.worst].figures.flip))
+            (tally.worst < 0 || badness(verdict, tally.flip_known) >
+                                    badness(&verdicts[tally.worst], tally.flip_known)))
             tally.worst = (int)i;
     }
     return tally;
@@ -278,7 +324,7 @@ Result verdict_status(const PairList *list, const Verdict *verdicts)
 void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *stream)
 {
     VerdictTally tally = verdict_tally(list, verdicts);
-    double flip = tally.worst < 0 ? 0 : verdicts[tally.worst].figures.flip;
+    double worst = tally.worst < 0 ? 0 : badness(&verdicts[tally.worst], tally.flip_known);
     fprintf(stream, "%zu image%s:", list->count, list->count == 1 ? "" : "s");
     const char *between = " ";
     for (int i = 0; i < OUTCOME_COUNT; ++i) {
@@ -288,8 +334,8 @@ void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *st
     }
     if (tally.updated)
         fprintf(stream, "; %d reference%s updated", tally.updated, tally.updated == 1 ? "" : "s");
-    if (flip > 0)
-        fprintf(stream, "; largest FLIP %.4g (%s)", flip,
+    if (worst > 0)
+        fprintf(stream, "; largest %s %.4g (%s)", tally.flip_known ? "FLIP" : "RMSE", worst,
                 quote(list->pairs[tally.worst].name).text);
     fprintf(stream, "\n");
 }
@@ -311,11 +357,17 @@ static void set_figures(json_t *object, const CompareResult *figures)
     json_object_set_new(object, "compared_pixels", json_integer((json_int_t)figures->compared));
     json_object_set_new(object, "rmse", json_real(figures->rmse));
     json_object_set_new(object, "psnr_db", isfinite(psnr) ? json_real(psnr) : json_null());
-    json_object_set_new(object, "ssim", json_real(figures->ssim));
-    json_object_set_new(object, "flip", json_real(figures->flip));
-    json_object_set_new(object, "flip_largest", json_real(figures->flip_most));
+    if (figures->figures & COMPARE_SSIM)
+        json_object_set_new(object, "ssim", json_real(figures->ssim));
+    if (figures->figures & COMPARE_FLIP) {
+        json_object_set_new(object, "flip", json_real(figures->flip));
+        json_object_set_new(object, "flip_largest", json_real(figures->flip_most));
+    }
     json_object_set_new(object, "largest_difference", json_real(figures->largest));
     json_object_set_new(object, "at", json_pack("[i, i]", figures->at[0], figures->at[1]));
+    json_object_set_new(object, "local_difference", json_real(figures->local));
+    json_object_set_new(object, "local_at",
+                        json_pack("[i, i]", figures->local_at[0], figures->local_at[1]));
     json_object_set_new(object, "failing_pixels", json_integer((json_int_t)figures->failing));
 }
 
@@ -331,6 +383,7 @@ json_t *verdict_to_json(const Verdict *verdict, const Pair *pair)
     json_object_set_new(object, "outcome", json_string(OUTCOME_NAMES[verdict->outcome]));
     json_object_set_new(object, "updated", json_boolean(verdict->updated));
     if (pair->level) json_object_set_new(object, "level", json_string(LEVEL_NAMES[pair->level]));
+    if (verdict->exact) json_object_set_new(object, "exact", json_true());
     if (verdict->dropped) json_object_set_new(object, "left_to", text_to_json(pair->fallback));
     if (verdict->text[0]) json_object_set_new(object, "text", text_to_json(verdict->text));
     if (verdict->measured) set_figures(object, &verdict->figures);
@@ -345,6 +398,10 @@ static json_t *limits_to_json(const CompareLimits *limits)
         json_object_set_new(object, "pixel_tolerance", json_real(limits->pixel_tolerance));
         json_object_set_new(object, number, json_real(limits->max_failing));
     }
+    if (limits->difference_matters)
+        json_object_set_new(object, "max_difference", json_real(limits->max_difference));
+    if (limits->local_matters)
+        json_object_set_new(object, "max_local_difference", json_real(limits->max_local));
     if (limits->flip_matters) json_object_set_new(object, "max_flip", json_real(limits->max_flip));
     json_object_set_new(object, "pixels_per_degree", json_real(limits->pixels_per_degree));
     return object;
@@ -371,7 +428,7 @@ Result verdict_write_json(const char *path, const PairList *list, const Verdict 
         json_object_set_new(object, OUTCOME_NAMES[i], json_integer(tally.outcomes[i]));
     json_object_set_new(object, "updated", json_integer(tally.updated));
     for (size_t i = 0; i < list->count; ++i)
-        if (!only_failures || verdicts[i].outcome != OUTCOME_SAME)
+        if (!only_failures || verdict_is_listed(&verdicts[i]))
             json_array_append_new(pairs, verdict_to_json(&verdicts[i], &list->pairs[i]));
     json_object_set_new(object, "pairs", pairs);
     Result result = json_write_file(object, path, error);

@@ -11,7 +11,8 @@
 #include <stdio.h>
 
 typedef enum Outcome {
-    OUTCOME_SAME,
+    OUTCOME_SAME,       // no visible difference
+    OUTCOME_WITHIN,     // different, but within the limits
     OUTCOME_DIFFERENT,  // beyond the limits
     OUTCOME_SIZES,      // different sizes
     OUTCOME_NEW,        // A is missing
@@ -24,8 +25,9 @@ typedef enum Outcome {
 
 typedef struct Verdict {
     Outcome outcome;
-    bool measured; // SAME and DIFFERENT: `figures` are valid
+    bool measured; // SAME, WITHIN and DIFFERENT: `figures` are valid
     CompareResult figures;
+    bool exact;         // the limits did not count: see VerdictOptions.exact_if_alike
     bool mask_is_wrong; // the reason for UNREADABLE
     bool updated;       // B replaced A, or A was left to the fallback: the pair is no longer bad
     bool dropped;       // A was removed or not written, because it equals the pair's fallback
@@ -37,9 +39,10 @@ typedef struct Verdict {
 
 typedef struct VerdictOptions {
     CompareLimits limits;
+    bool exact_if_alike; // images with the same texts Renderer, Driver and CPU must be equal
     const char *heat_map, *sheet; // file to write for this pair; NULL: none
-    bool draw_same;               // draw also if the images are the same
-    bool update;                  // copy B over A unless they are the same
+    bool draw_all;                // draw also if the images are not different
+    bool update;                  // copy B over A unless it is good
     const Mask *mask;             // a mask for all pairs, already read; NULL: reads each pair's
     Bytes *map;                   // receives the heat map as PNG if a pixel differs; NULL: none
 } VerdictOptions;
@@ -51,10 +54,13 @@ typedef struct VerdictOptions {
 void verdict_find(Verdict *verdict, const Pair *pair, const VerdictOptions *options);
 void verdict_destroy(Verdict *verdict);
 
-// Same or updated.
+// Same, within the limits, or updated.
 bool verdict_is_good(const Verdict *verdict);
 
-// "same", "size mismatch", ...
+// Whether lists of failures contain the pair: it is not good, or has been updated.
+bool verdict_is_listed(const Verdict *verdict);
+
+// "same", "within limits", "size mismatch", ...
 const char *verdict_word(const Verdict *verdict);
 
 // Names, outcome and metrics as an object; and the limits, for goldens by platform as one object
@@ -70,20 +76,22 @@ void verdict_print(const Verdict *verdict, const Pair *pair, FILE *stream);
 typedef struct VerdictTally {
     int outcomes[OUTCOME_COUNT]; // including updated ones
     int updated, bad;
-    int errors; // of the bad ones: unreadable or unrendered
-    int worst;  // the measured pair with the largest mean FLIP, -1: none
+    int errors;      // of the bad ones: unreadable or unrendered
+    bool flip_known; // of all measured pairs
+    int worst;       // the measured pair with the largest mean FLIP, or the largest RMSE if
+                     // !flip_known; -1: none
 } VerdictTally;
 
 VerdictTally verdict_tally(const PairList *list, const Verdict *verdicts);
 
-// RESULT_OK if all are the same or updated; RESULT_BAD_INPUT if an image could not be read and is
+// RESULT_OK if all are good; RESULT_BAD_INPUT if an image could not be read and is
 // not replaced; otherwise RESULT_FAILED.
 Result verdict_status(const PairList *list, const Verdict *verdicts);
 
-// The last line: counts, and the largest mean FLIP.
+// The last line: counts, and the largest mean FLIP or RMSE.
 void verdict_print_tally(const PairList *list, const Verdict *verdicts, FILE *stream);
 
 // A JSON object: limits, counts, and an object for each pair; with `only_failures` for each pair
-// that is not the same. RESULT_FAILED with path and reason.
+// for which verdict_is_listed is true. RESULT_FAILED with path and reason.
 Result verdict_write_json(const char *path, const PairList *list, const Verdict *verdicts,
                           const CompareLimits limits[LEVELS], bool only_failures, Error *error);

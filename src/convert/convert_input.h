@@ -8,7 +8,7 @@
 
 #include "base/target.h"
 #include "formats/strands_read.h"
-#include "run/cache.h"
+#include "run/cache_file.h"
 
 #include <jansson.h>
 #include <stdio.h>

@@ -336,16 +336,6 @@ void gpu_leave(void)
 {
     use(&NOBODY);
     gpu_error_forget();
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_SCISSOR_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_LESS);
-    glActiveTexture(GL_TEXTURE0);
-    glUseProgram(0);
-    glBindVertexArray(0);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 static void end_stock(Stock *stock, bool lost)

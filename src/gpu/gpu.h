@@ -77,8 +77,8 @@ void gpu_lose(Gpu *gpu);
 Result gpu_borrow(Gpu *gpu, Error *error);
 
 // For a borrowed context: between these two calls the program uses GL. gpu_enter discards pending
-// errors and remembered bindings, and fails with RESULT_NO_GL if no context is current. gpu_leave
-// restores the defaults that drawing changes (tractrix_device_borrow).
+// errors and remembered bindings, and fails with RESULT_NO_GL if no context is current. The state
+// of the context is saved and restored apart from this (gl_state.h).
 Result gpu_enter(const Gpu *gpu, Error *error);
 void gpu_leave(void);
 

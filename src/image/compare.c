@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "image/compare.h"
 
-#include "image/convolve.h"
 #include "image/flip.h"
+#include "image/pixel_sums.h"
+#include "image/ssim.h"
 
 #include <assert.h>
 #include <math.h>
@@ -15,133 +16,12 @@ CompareLimits compare_limits_default(void)
     return (CompareLimits){.pixels_matter = true, .pixels_per_degree = FLIP_PIXELS_PER_DEGREE};
 }
 
-// --- Structural similarity.
-
-enum { WINDOW = 11, MOMENTS = 5 };
-
-static const double SIGMA = 1.5, C1 = (0.01 * 255) * (0.01 * 255), C2 = (0.03 * 255) * (0.03 * 255);
-
-static double luma(const FloatImage *image, size_t i)
-{
-    const float *rgb = image->rgb + 3 * i;
-    return 0.299 * (double)rgb[0] + 0.587 * (double)rgb[1] + 0.114 * (double)rgb[2];
-}
-
-static int fit_radius(int side)
-{
-    return side >= WINDOW ? WINDOW / 2 : (side - 1) / 2;
-}
-
-typedef struct Windows {
-    double (*lumas)[2]; // [height][width] of a and b
-    int width;
-    const Mask *mask;
-    ConvolveKernel kx, ky;
-} Windows;
-
-// Equations (13) and (6) of the paper for the window around x, y: weighted means, variances and
-// covariance. Computed in double, because a variance is a small difference of large numbers.
-// `share`: the sum of the weights of the compared pixels.
-static double index_at(const Windows *windows, int x, int y, double *share)
-{
-    const ConvolveKernel *kx = &windows->kx, *ky = &windows->ky;
-    double sums[MOMENTS] = {0}; // of a, b, aa, bb, ab
-    *share = 0;
-    for (int j = -ky->radius; j <= ky->radius; ++j)
-        for (int i = -kx->radius; i <= kx->radius; ++i) {
-            size_t pixel = (size_t)(y + j) * (size_t)windows->width + (size_t)(x + i);
-            if (!mask_counts(windows->mask, pixel)) continue;
-            const double *l = windows->lumas[pixel];
-            double w = kx->weights[kx->radius + i] * ky->weights[ky->radius + j];
-            double wa = w * l[0], wb = w * l[1];
-            *share += w;
-            sums[0] += wa, sums[1] += wb;
-            sums[2] += wa * l[0], sums[3] += wb * l[1], sums[4] += wa * l[1];
-        }
-    if (!windows->mask) *share = 1; // exactly, without rounding errors
-    if (*share <= 0) return 0;
-    for (int i = 0; i < MOMENTS; ++i) sums[i] /= *share;
-    double aa = sums[0] * sums[0], bb = sums[1] * sums[1], ab = sums[0] * sums[1];
-    return (2 * ab + C1) * (2 * (sums[4] - ab) + C2) /
-           ((aa + bb + C1) * ((sums[2] - aa) + (sums[3] - bb) + C2));
-}
-
-Result compare_ssim(double *ssim, const FloatImage *a, const FloatImage *b, const Mask *mask,
-                    Error *error)
-{
-    size_t count = (size_t)a->width * (size_t)a->height;
-    Windows windows = {.width = a->width, .mask = mask};
-    windows.lumas = malloc(count * sizeof *windows.lumas);
-    if (!windows.lumas)
-        return error_set(error, RESULT_FAILED, "no memory for the SSIM of two images");
-    for (size_t i = 0; i < count; ++i)
-        windows.lumas[i][0] = luma(a, i), windows.lumas[i][1] = luma(b, i);
-    convolve_make_gauss(&windows.kx, fit_radius(a->width), SIGMA);
-    convolve_make_gauss(&windows.ky, fit_radius(a->height), SIGMA);
-    int left = windows.kx.radius, top = windows.ky.radius;
-    double sum = 0, shares = 0;
-    for (int y = top; y < a->height - top; ++y)
-        for (int x = left; x < a->width - left; ++x) {
-            double share, index = index_at(&windows, x, y, &share);
-            sum += share * index;
-            shares += share;
-        }
-    *ssim = sum / shares;
-    free(windows.lumas);
-    return RESULT_OK;
-}
-
-// --- One background.
-
-static void count_pixels(CompareResult *result, const CompareLimits *limits, const FloatImage *a,
-                         const FloatImage *b, const Mask *mask)
-{
-    double sum = 0;
-    size_t width = (size_t)a->width, count = width * (size_t)a->height;
-    for (size_t i = 0; i < count; ++i) {
-        if (!mask_counts(mask, i)) continue;
-        double largest = 0;
-        for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
-            double difference = fabs((double)a->rgb[k] - (double)b->rgb[k]);
-            sum += difference * difference;
-            largest = fmax(largest, difference);
-        }
-        result->failing += largest > limits->pixel_tolerance;
-        if (largest <= result->largest) continue;
-        result->largest = largest;
-        result->at[0] = (int)(i % width), result->at[1] = (int)(i / width);
-    }
-    result->rmse = sqrt(sum / (3 * (double)result->compared));
-}
-
-// Replaces ignored pixels by the nearest compared pixel, in the same way as filters extend an image
-// beyond its border.
-static void fill_ignored(FloatImage *image, const Mask *mask)
-{
-    size_t count = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < count && mask; ++i)
-        memcpy(image->rgb + 3 * i, image->rgb + 3 * (size_t)mask->nearest[i],
-               3 * sizeof *image->rgb);
-}
-
-// The mean and the largest FLIP value of the compared pixels.
-static void take_flip(CompareResult *result, const float *map, const Mask *mask)
-{
-    size_t count = (size_t)result->width * (size_t)result->height;
-    double sum = 0;
-    for (size_t i = 0; i < count; ++i) {
-        if (!mask_counts(mask, i)) continue;
-        sum += (double)map[i];
-        result->flip_most = fmax(result->flip_most, (double)map[i]);
-    }
-    result->flip = sum / (double)result->compared;
-}
-
 // The two images and the pixels to compare.
 typedef struct Comparison {
     const Image *a, *b;
     const Mask *mask; // NULL: all pixels
     const CompareLimits *limits;
+    unsigned figures; // to compute
 } Comparison;
 
 // A result without differences.
@@ -151,33 +31,156 @@ static CompareResult start_result(const Comparison *comparison)
     size_t count = (size_t)width * (size_t)height;
     return (CompareResult){.width = width,
                            .height = height,
-                           .compared = comparison->mask ? comparison->mask->count : count};
+                           .compared = comparison->mask ? comparison->mask->count : count,
+                           .figures = comparison->figures};
 }
 
-static Result compare_over(CompareResult *result, float *map, const Comparison *comparison,
-                           float background, Error *error)
+// An area of both images over a background. Ignored pixels are replaced by the nearest compared
+// pixel, in the same way as filters extend an image beyond its border.
+static Result create_areas(FloatImage areas[2], const Comparison *comparison, float background,
+                           ImageArea area, Error *error)
 {
-    FloatImage p = {0}, q = {0};
-    const Mask *mask = comparison->mask;
-    const CompareLimits *limits = comparison->limits;
-    double mean;
-    *result = start_result(comparison);
-    Result outcome = float_image_create(&p, comparison->a, background, error);
-    THEN(outcome, float_image_create(&q, comparison->b, background, error));
-    if (outcome == RESULT_OK) {
-        fill_ignored(&p, mask);
-        fill_ignored(&q, mask);
-        count_pixels(result, limits, &p, &q, mask);
+    const int *nearest = comparison->mask ? comparison->mask->nearest : NULL;
+    areas[0] = areas[1] = (FloatImage){0};
+    TRY(float_image_create_area(&areas[0], comparison->a, nearest, background, area, error));
+    return float_image_create_area(&areas[1], comparison->b, nearest, background, area, error);
+}
+
+static void destroy_areas(FloatImage areas[2])
+{
+    for (int i = 0; i < 2; ++i) float_image_destroy(&areas[i]);
+}
+
+static Result find_ssim(CompareResult *result, const Comparison *comparison, float background,
+                        Error *error)
+{
+    enum { ROWS = 64 };
+    Ssim ssim;
+    Result outcome = ssim_create(&ssim, result->width, result->height, comparison->mask, error);
+    for (int y = 0; y < result->height && outcome == RESULT_OK; y += ROWS) {
+        FloatImage areas[2];
+        int rows = result->height - y < ROWS ? result->height - y : ROWS;
+        const ImageArea area = {0, y, result->width, rows};
+        outcome = create_areas(areas, comparison, background, area, error);
+        if (outcome == RESULT_OK) ssim_add(&ssim, &areas[0], &areas[1]);
+        destroy_areas(areas);
     }
-    THEN(outcome, compare_ssim(&result->ssim, &p, &q, mask, error));
-    THEN(outcome, flip_compare(map, &mean, &p, &q, limits->pixels_per_degree, error));
-    if (outcome == RESULT_OK) take_flip(result, map, mask);
-    float_image_destroy(&p);
-    float_image_destroy(&q);
+    if (outcome == RESULT_OK) result->ssim = ssim_mean(&ssim);
+    ssim_destroy(&ssim);
+    return outcome;
+}
+
+// --- FLIP, tile by tile. The pixels around a tile, as far as FLIP's filters reach, are computed in
+// several tiles.
+
+typedef struct Tiles {
+    Flip flip;
+    float *errors; // of a tile with the pixels around it
+    int side, reach;
+    float *map;   // of the whole image; NULL: none
+    double total; // of the compared pixels
+    double most;
+} Tiles;
+
+static Result tiles_create(Tiles *tiles, const Comparison *comparison, float *map, Error *error)
+{
+    int reach = flip_reach(comparison->limits->pixels_per_degree);
+    int side = 4 * reach > 256 ? 4 * reach : 256;
+    size_t width = (size_t)(side + 2 * reach), pixels = width * width,
+           count = (size_t)comparison->a->width * (size_t)comparison->a->height;
+    if (pixels > count) pixels = count;
+    *tiles = (Tiles){.side = side, .reach = reach, .map = map};
+    TRY(flip_create(&tiles->flip, pixels, comparison->limits->pixels_per_degree, error));
+    tiles->errors = malloc(pixels * sizeof *tiles->errors);
+    return tiles->errors ? RESULT_OK : error_set(error, RESULT_FAILED, "no memory for FLIP");
+}
+
+static void tiles_destroy(Tiles *tiles)
+{
+    flip_destroy(&tiles->flip);
+    free(tiles->errors);
+}
+
+static ImageArea grow(ImageArea area, int by, const Image *image)
+{
+    int x = area.x > by ? area.x - by : 0, y = area.y > by ? area.y - by : 0;
+    int right = area.x + area.width + by, bottom = area.y + area.height + by;
+    if (right > image->width) right = image->width;
+    if (bottom > image->height) bottom = image->height;
+    return (ImageArea){x, y, right - x, bottom - y};
+}
+
+// Takes the errors of a tile; those of its surroundings belong to other tiles.
+static void take_errors(Tiles *tiles, const Comparison *comparison, ImageArea tile,
+                        ImageArea around)
+{
+    for (int y = tile.y; y < tile.y + tile.height; ++y)
+        for (int x = tile.x; x < tile.x + tile.width; ++x) {
+            float error = tiles->errors[(y - around.y) * around.width + (x - around.x)];
+            size_t i = (size_t)y * (size_t)comparison->a->width + (size_t)x;
+            if (!mask_counts(comparison->mask, i)) continue;
+            tiles->total += (double)error;
+            tiles->most = fmax(tiles->most, (double)error);
+            if (tiles->map) tiles->map[i] = fmaxf(tiles->map[i], error);
+        }
+}
+
+static Result add_tile(Tiles *tiles, const Comparison *comparison, float background, ImageArea tile,
+                       Error *error)
+{
+    FloatImage areas[2];
+    const ImageArea around = grow(tile, tiles->reach, comparison->a);
+    size_t count = (size_t)around.width * (size_t)around.height;
+    Result result = create_areas(areas, comparison, background, around, error);
+    if (result == RESULT_OK &&
+        memcmp(areas[0].rgb, areas[1].rgb, 3 * count * sizeof *areas[0].rgb) != 0) {
+        flip_find(&tiles->flip, tiles->errors, &areas[0], &areas[1]);
+        take_errors(tiles, comparison, tile, around);
+    }
+    destroy_areas(areas);
+    return result;
+}
+
+static Result find_flip(CompareResult *result, float *map, const Comparison *comparison,
+                        float background, Error *error)
+{
+    Tiles tiles;
+    Result outcome = tiles_create(&tiles, comparison, map, error);
+    for (int y = 0; y < result->height; y += tiles.side)
+        for (int x = 0; x < result->width && outcome == RESULT_OK; x += tiles.side) {
+            ImageArea tile = {x, y, result->width - x, result->height - y};
+            if (tile.width > tiles.side) tile.width = tiles.side;
+            if (tile.height > tiles.side) tile.height = tiles.side;
+            outcome = add_tile(&tiles, comparison, background, tile, error);
+        }
+    result->flip = tiles.total / (double)result->compared;
+    result->flip_most = tiles.most;
+    tiles_destroy(&tiles);
     return outcome;
 }
 
 // --- Both backgrounds.
+
+static Result compare_over(CompareResult *result, float *map, const Comparison *comparison,
+                           float background, Error *error)
+{
+    PixelSums sums;
+    *result = start_result(comparison);
+    TRY(pixel_sums_find(&sums, comparison->a, comparison->b, comparison->mask, background,
+                        comparison->limits->pixel_tolerance, error));
+    result->failing = sums.failing;
+    result->largest = sums.largest;
+    memcpy(result->at, sums.at, sizeof result->at);
+    result->local = sums.local;
+    memcpy(result->local_at, sums.local_at, sizeof result->local_at);
+    result->rmse = sqrt(sums.squares / (3 * (double)result->compared));
+    result->ssim = 1;
+    if (sums.largest == 0) return RESULT_OK;
+    if (comparison->figures & COMPARE_SSIM) TRY(find_ssim(result, comparison, background, error));
+    if (comparison->figures & COMPARE_FLIP)
+        TRY(find_flip(result, map, comparison, background, error));
+    return RESULT_OK;
+}
 
 static void keep_worse(CompareResult *worse, const CompareResult *other)
 {
@@ -185,27 +188,15 @@ static void keep_worse(CompareResult *worse, const CompareResult *other)
         worse->largest = other->largest;
         memcpy(worse->at, other->at, sizeof worse->at);
     }
+    if (other->local > worse->local) {
+        worse->local = other->local;
+        memcpy(worse->local_at, other->local_at, sizeof worse->local_at);
+    }
     if (other->failing > worse->failing) worse->failing = other->failing;
     worse->rmse = fmax(worse->rmse, other->rmse);
     worse->ssim = fmin(worse->ssim, other->ssim);
     worse->flip = fmax(worse->flip, other->flip);
     worse->flip_most = fmax(worse->flip_most, other->flip_most);
-}
-
-static Result add_white(CompareResult *result, float *map, const Comparison *comparison,
-                        Error *error)
-{
-    CompareResult white;
-    size_t count = (size_t)result->width * (size_t)result->height;
-    float *other = malloc(count * sizeof *other);
-    if (!other) return error_set(error, RESULT_FAILED, "no memory for a map of %zu pixels", count);
-    Result outcome = compare_over(&white, other, comparison, 255, error);
-    if (outcome == RESULT_OK) {
-        keep_worse(result, &white);
-        for (size_t i = 0; i < count; ++i) map[i] = fmaxf(map[i], other[i]);
-    }
-    free(other);
-    return outcome;
 }
 
 static bool are_equal(const Image *a, const Image *b)
@@ -218,17 +209,16 @@ static Result compare_all(CompareResult *result, float *map, const Comparison *c
                           Error *error)
 {
     const Image *a = comparison->a, *b = comparison->b;
-    size_t count = (size_t)a->width * (size_t)a->height;
+    CompareResult white;
     // Most frames of most runs are equal; this shortcut gives the same result as the computation.
     if (are_equal(a, b)) {
         result->ssim = 1;
-        memset(map, 0, count * sizeof *map);
-    } else {
-        TRY(compare_over(result, map, comparison, 0, error));
-        if (a->channels == 4 || b->channels == 4) TRY(add_white(result, map, comparison, error));
+        return RESULT_OK;
     }
-    for (size_t i = 0; i < count; ++i)
-        if (!mask_counts(comparison->mask, i)) map[i] = NAN;
+    TRY(compare_over(result, map, comparison, 0, error));
+    if (a->channels != 4 && b->channels != 4) return RESULT_OK;
+    TRY(compare_over(&white, map, comparison, 255, error));
+    keep_worse(result, &white);
     return RESULT_OK;
 }
 
@@ -237,6 +227,8 @@ static bool is_within(const CompareResult *result, const CompareLimits *limits)
     double allowed =
         limits->max_failing * (limits->max_failing_percent ? 0.01 * (double)result->compared : 1);
     return (!limits->pixels_matter || (double)result->failing <= allowed) &&
+           (!limits->difference_matters || result->largest <= limits->max_difference) &&
+           (!limits->local_matters || result->local <= limits->max_local) &&
            (!limits->flip_matters || result->flip <= limits->max_flip);
 }
 
@@ -247,28 +239,31 @@ Result compare_images(CompareResult *result, float *map, const Image *a, const I
     assert(!mask || (mask->width == a->width && mask->height == a->height));
     size_t count = (size_t)a->width * (size_t)a->height;
     if (mask && mask->count == count) mask = NULL;
-    const Comparison comparison = {a, b, mask, limits};
+    Comparison comparison = {a, b, mask, limits, limits->figures};
+    if (map || limits->flip_matters) comparison.figures |= COMPARE_FLIP;
     *result = start_result(&comparison);
-    float *own = map ? NULL : malloc(count * sizeof *own);
-    if (!map && !own)
-        return error_set(error, RESULT_FAILED, "no memory for a map of %zu pixels", count);
-    Result outcome = compare_all(result, map ? map : own, &comparison, error);
+    for (size_t i = 0; i < count && map; ++i) map[i] = mask_counts(mask, i) ? 0 : NAN;
+    TRY(compare_all(result, map, &comparison, error));
+    result->equal = result->largest == 0;
+    if (result->equal) result->figures = COMPARE_SSIM | COMPARE_FLIP;
     result->psnr = result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;
-    result->same = is_within(result, limits);
-    free(own);
-    return outcome;
+    result->within = is_within(result, limits);
+    return RESULT_OK;
 }
 
 int compare_format(char *text, size_t size, const CompareResult *result)
 {
     uint64_t ignored = (uint64_t)result->width * (uint64_t)result->height - result->compared;
-    char note[64] = "";
+    char note[64] = "", ssim[32] = "", flip[64] = "";
     if (ignored) snprintf(note, sizeof note, ", %llu pixels ignored", (unsigned long long)ignored);
+    if (result->figures & COMPARE_SSIM) snprintf(ssim, sizeof ssim, "SSIM %.6g, ", result->ssim);
+    if (result->figures & COMPARE_FLIP)
+        snprintf(flip, sizeof flip, "FLIP %.4g (at most %.4g), ", result->flip, result->flip_most);
     return snprintf(text, size,
-                    "RMSE %.4g, PSNR %.4g dB, SSIM %.6g, FLIP %.4g (at most %.4g), largest "
+                    "RMSE %.4g, PSNR %.4g dB, %s%slargest difference %.4g at (%d, %d), local "
                     "difference %.4g at (%d, %d), %llu failing pixels (%.3g %%)%s",
-                    result->rmse, result->psnr, result->ssim, result->flip, result->flip_most,
-                    result->largest, result->at[0], result->at[1],
+                    result->rmse, result->psnr, ssim, flip, result->largest, result->at[0],
+                    result->at[1], result->local, result->local_at[0], result->local_at[1],
                     (unsigned long long)result->failing,
                     100 * (double)result->failing / (double)result->compared, note);
 }

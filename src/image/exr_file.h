@@ -8,6 +8,8 @@
 #include "image/image_text.h"
 
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 // Data of each pixel besides its colour, as drawn by --aov: an IMAGE_FLOAT of 3 channels.
 typedef enum ExrLayer {
@@ -17,6 +19,18 @@ typedef enum ExrLayer {
     EXR_STRAND,   // three bytes, divided by 255; black if empty
     EXR_LAYERS
 } ExrLayer;
+
+// The data of a pixel, as files hold it.
+typedef struct ExrPixel {
+    float coverage, depth; // m; 0: empty
+    float tangent[3];      // a unit vector; 0: empty
+    uint32_t strand;       // 24 bits; 0: empty
+} ExrPixel;
+
+// Pixel i of the layers. A layer shows the nearest strand that covers enough of the pixel. Layers
+// are rendered one by one, so if a strand covers just about enough, some layers may show it and
+// others may not: then all but the coverage are empty.
+ExrPixel exr_file_pixel(const float *const layers[EXR_LAYERS], size_t i);
 
 typedef struct ExrFile {
     const Image *image;      // IMAGE_FLOAT: linear, primaries of Rec. 709, premultiplied

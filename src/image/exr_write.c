@@ -125,49 +125,61 @@ static uint32_t bits_of(float value)
     return bits;
 }
 
-// The value to store in a channel, computed from the layer's pixel.
-static uint32_t convert(const Channel *channel, const float *pixel, int channels)
-{
-    if (channel->layer < 0) return bits_of(channel->number < channels ? pixel[channel->number] : 1);
-    if (channel->layer == EXR_STRAND)
-        return (uint32_t)(pixel[0] * 255 + 0.5f) | (uint32_t)(pixel[1] * 255 + 0.5f) << 8 |
-               (uint32_t)(pixel[2] * 255 + 0.5f) << 16;
-    if (channel->layer != EXR_TANGENT) return bits_of(pixel[channel->number]);
-    double t[3], square = 0;
-    for (int k = 0; k < 3; ++k) {
-        t[k] = 2 * (double)pixel[k] - 1;
-        square += t[k] * t[k];
-    }
-    return bits_of(square == 0 ? 0 : (float)(t[channel->number] / sqrt(square)));
-}
-
-// Whether every layer shows a strand at the pixel. A layer shows the nearest strand that covers
-// enough of the pixel. Layers are rendered one by one, so if a strand covers just about enough,
-// some layers may show it and others may not.
-static bool has_strand(const Image *layers, size_t pixel)
+// Whether every layer of a strand shows one at the pixel.
+static bool has_strand(const float *const layers[EXR_LAYERS], size_t i)
 {
     for (int l = EXR_DEPTH; l <= EXR_STRAND; ++l) {
-        const float *at = (const float *)(const void *)layers[l].pixels + 3 * pixel;
+        const float *at = layers[l] + 3 * i;
         if (at[0] == 0 && at[1] == 0 && at[2] == 0) return false;
     }
     return true;
 }
 
+ExrPixel exr_file_pixel(const float *const layers[EXR_LAYERS], size_t i)
+{
+    ExrPixel pixel = {.coverage = layers[EXR_COVERAGE][3 * i]};
+    const float *tangent = layers[EXR_TANGENT] + 3 * i, *strand = layers[EXR_STRAND] + 3 * i;
+    double t[3], square = 0;
+    if (!has_strand(layers, i)) return pixel;
+    pixel.depth = layers[EXR_DEPTH][3 * i];
+    pixel.strand = (uint32_t)(strand[0] * 255 + 0.5f) | (uint32_t)(strand[1] * 255 + 0.5f) << 8 |
+                   (uint32_t)(strand[2] * 255 + 0.5f) << 16;
+    for (int k = 0; k < 3; ++k) {
+        t[k] = 2 * (double)tangent[k] - 1;
+        square += t[k] * t[k];
+    }
+    for (int k = 0; k < 3 && square > 0; ++k) pixel.tangent[k] = (float)(t[k] / sqrt(square));
+    return pixel;
+}
+
+// The value to store in a channel of a layer.
+static uint32_t convert(const Channel *channel, const ExrPixel *pixel)
+{
+    return channel->layer == EXR_STRAND     ? pixel->strand
+           : channel->layer == EXR_COVERAGE ? bits_of(pixel->coverage)
+           : channel->layer == EXR_DEPTH    ? bits_of(pixel->depth)
+                                            : bits_of(pixel->tangent[channel->number]);
+}
+
 static void fill_rows(const Writer *writer, int y, int rows)
 {
-    size_t width = (size_t)writer->file->image->width;
-    for (int c = 0; c < CHANNELS_MOST; ++c) {
-        const Channel *channel = &CHANNELS[c];
-        if (!has_channel(writer->file, channel)) continue;
-        const Image *image =
-            channel->layer < 0 ? writer->file->image : &writer->file->layers[channel->layer];
-        const float *from = (const float *)(const void *)image->pixels;
-        size_t step = (size_t)image->channels, first = (size_t)y * width,
-               count = (size_t)rows * width;
-        uint32_t *to = writer->rows + (size_t)c * ROWS * width;
-        for (size_t i = 0; i < count; ++i) {
-            bool none = channel->layer >= EXR_DEPTH && !has_strand(writer->file->layers, first + i);
-            to[i] = none ? 0 : convert(channel, from + (first + i) * step, image->channels);
+    const Image *image = writer->file->image;
+    size_t width = (size_t)image->width, first = (size_t)y * width, count = (size_t)rows * width;
+    const float *layers[EXR_LAYERS] = {0};
+    for (int l = 0; l < EXR_LAYERS && writer->file->layers; ++l)
+        layers[l] = (const float *)(const void *)writer->file->layers[l].pixels;
+    for (size_t i = 0; i < count; ++i) {
+        const float *color =
+            (const float *)(const void *)image->pixels + (first + i) * (size_t)image->channels;
+        ExrPixel pixel = {0};
+        if (writer->file->layers) pixel = exr_file_pixel(layers, first + i);
+        for (int c = 0; c < CHANNELS_MOST; ++c) {
+            const Channel *channel = &CHANNELS[c];
+            if (!has_channel(writer->file, channel)) continue;
+            writer->rows[(size_t)c * ROWS * width + i] =
+                channel->layer >= 0
+                    ? convert(channel, &pixel)
+                    : bits_of(channel->number < image->channels ? color[channel->number] : 1);
         }
     }
 }

@@ -7,12 +7,32 @@
 
 #include "image/float_image.h"
 
+#include <stddef.h>
+
 // The paper's monitor: 3840 pixels over 0.7 m, seen from 0.7 m.
 static const double FLIP_PIXELS_PER_DEGREE = 67;
 
-// Writes the error of each pixel (0 to 1) to `map` [height][width] and the mean to `mean`. The
-// images must have the same size; levels beyond 0..255 are clamped. `pixels_per_degree`: 1 to 1000.
-// Equal images give exactly 0. RESULT_FAILED when memory is short.
+// Filters and memory for images of up to some number of pixels.
+typedef struct FlipFilters FlipFilters;
+typedef struct Flip {
+    FlipFilters *filters;
+    float *planes;
+    size_t pixels;
+} Flip;
+
+// `pixels_per_degree`: 1 to 1000. RESULT_FAILED when memory is short. A zeroed struct may be
+// destroyed.
+Result flip_create(Flip *flip, size_t pixels, double pixels_per_degree, Error *error);
+void flip_destroy(Flip *flip);
+
+// The error of a pixel depends on pixels up to this many pixels away along x or y.
+int flip_reach(double pixels_per_degree);
+
+// Writes the error of each pixel (0 to 1) to `map` [height][width]. The images must have the same
+// size, of at most flip->pixels; levels beyond 0..255 are clamped. Equal images give exactly 0.
+void flip_find(const Flip *flip, float *map, const FloatImage *a, const FloatImage *b);
+
+// The same at once; `mean` is that of the map. RESULT_FAILED when memory is short.
 Result flip_compare(float *map, double *mean, const FloatImage *a, const FloatImage *b,
                     double pixels_per_degree, Error *error);
 

@@ -33,6 +33,17 @@ Result float_image_read_image(Image *image, const char *path, Error *error)
     return result;
 }
 
+Result float_image_read_texts(ImageTexts *texts, const char *path, Error *error)
+{
+    Bytes file;
+    *texts = (ImageTexts){0};
+    TRY(bytes_read_file(&file, path, error));
+    Result result = exr_file_is(&file) ? exr_file_decode_texts(texts, &file, path, error)
+                                       : png_decode_texts(texts, &file, path, error);
+    bytes_destroy(&file);
+    return result;
+}
+
 // Sample `i` in levels 0..255; for alpha, too.
 static double read_level(const Image *image, size_t i)
 {
@@ -56,23 +67,40 @@ static void lay_over(const Image *image, size_t i, float level, float rgb[3])
         for (int k = 0; k < 3; ++k) rgb[k] = (float)level_of_light((double)light[k] + behind);
         return;
     }
+    bool bytes = image->kind == IMAGE_8, clear = bytes && has_alpha && image->pixels[i + 3] == 0;
+    if (clear || (bytes && (!has_alpha || image->pixels[i + 3] == 255))) {
+        for (size_t k = 0; k < 3; ++k) rgb[k] = clear ? level : image->pixels[i + k];
+        return;
+    }
     double alpha = has_alpha ? read_level(image, i + 3) / 255 : 1;
     for (size_t k = 0; k < 3; ++k)
         rgb[k] = (float)(read_level(image, i + k) * alpha + (double)level * (1 - alpha));
 }
 
-Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error)
+Result float_image_create_area(FloatImage *floats, const Image *image, const int *nearest,
+                               float level, ImageArea area, Error *error)
 {
-    size_t count = (size_t)image->width * (size_t)image->height, step = (size_t)image->channels;
-    *floats = (FloatImage){.width = image->width, .height = image->height};
+    size_t count = (size_t)area.width * (size_t)area.height, step = (size_t)image->channels;
+    *floats = (FloatImage){.width = area.width, .height = area.height};
     floats->rgb = malloc(count * 3 * sizeof *floats->rgb);
     if (!floats->rgb) {
         *floats = (FloatImage){0};
         return error_set(error, RESULT_FAILED, "no memory to compare images of %d x %d",
                          image->width, image->height);
     }
-    for (size_t i = 0; i < count; ++i) lay_over(image, step * i, level, floats->rgb + 3 * i);
+    float *to = floats->rgb;
+    for (int y = area.y; y < area.y + area.height; ++y)
+        for (int x = area.x; x < area.x + area.width; ++x, to += 3) {
+            size_t i = (size_t)y * (size_t)image->width + (size_t)x;
+            lay_over(image, step * (nearest ? (size_t)nearest[i] : i), level, to);
+        }
     return RESULT_OK;
+}
+
+Result float_image_create(FloatImage *floats, const Image *image, float level, Error *error)
+{
+    const ImageArea all = {0, 0, image->width, image->height};
+    return float_image_create_area(floats, image, NULL, level, all, error);
 }
 
 void float_image_destroy(FloatImage *floats)

@@ -16,7 +16,7 @@ _Static_assert((int)TRACTRIX_FAILED == (int)RESULT_FAILED &&
 TractrixResult library_end(Result result, const Error *error, TractrixError *to)
 {
     if (result != RESULT_OK && to) snprintf(to->text, sizeof to->text, "%s", error->text);
-    return result == RESULT_INTERRUPTED ? TRACTRIX_FAILED : (TractrixResult)result;
+    return (TractrixResult)result;
 }
 
 TractrixResult library_refuse(TractrixError *to, const char *format, ...)

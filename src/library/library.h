@@ -62,16 +62,28 @@ Result library_take_image(TractrixImage *to, const TractrixImage *image, const c
 // `image` has no alpha, the pixels become opaque.
 void library_put_image(const TractrixImage *to, const Image *image);
 // Makes an image with the caller's pixels, without an alpha channel if all pixels are opaque.
-// RESULT_FAILED when memory is short.
-Result library_copy_image(Image *to, const TractrixImage *from, Error *error);
+// RESULT_BAD_INPUT, naming `name`, if a float is not finite; RESULT_FAILED when memory is short.
+Result library_copy_image(Image *to, const TractrixImage *from, const char *name, Error *error);
 
 // --- Devices.
 
 typedef Result LibraryWork(void *data, Error *error);
 
+// Exposures that have been measured on a device, by fingerprint_of_scene. The oldest one is
+// replaced.
+enum { LIBRARY_EXPOSURES = 64 };
+typedef struct LibraryExposure {
+    uint64_t scene;
+    float value; // EV
+} LibraryExposure;
+
 struct TractrixDevice {
     Gpu gpu;
     bool borrowed;
+    LibraryExposure exposures[LIBRARY_EXPOSURES];
+    uint32_t exposure_count;    // of all that were measured
+    TractrixProgress *progress; // NULL: none
+    void *progress_data;
     atomic_int users; // the handle and its children
     pid_t process;    // the process that opened the device
     // Only if the device is not borrowed: its thread, and the work that the thread is to do.
@@ -101,6 +113,9 @@ Result library_refuse_name(const char *name, Error *error);
 
 // Whether tractrix_simulation_set may change the parameter.
 bool library_is_live(const ParamInfo *info);
+
+// Whether it is also one of drawing alone.
+bool library_is_look(const ParamInfo *info);
 
 // --- Scenes.
 
@@ -166,7 +181,10 @@ struct TractrixSimulation {
     LibraryMap *maps;                    // [2 * sections]: guides and followers of each section
     DrivenHead driven[SCENE_MAX_BODIES]; // heads that the caller moves
     LibraryPlace next[SCENE_MAX_BODIES];
-    uint64_t aims; // how often a camera parameter was changed
+    bool is_driven[SCENE_MAX_BODIES]; // the caller has placed the body
+    uint64_t aims;                    // how often a camera parameter was changed
+    uint64_t looks;                   // how often a parameter of drawing alone was changed
+    uint64_t exposures;               // how often the exposure was
 };
 
 // Free the simulation's maps: library_end_copies frees the GPU's objects and needs the device's

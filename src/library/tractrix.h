@@ -44,10 +44,11 @@ extern "C" {
 #define TRACTRIX_VERSION_NUMBER 0x000200 // 0xMMmmpp: major, minor, patch
 typedef enum TractrixResult {            // equal to the exit statuses of the programs
     TRACTRIX_OK = 0,
-    TRACTRIX_FAILED = 1,    // a failure at run time: out of memory, disk full, driver error
-    TRACTRIX_USAGE = 2,     // an argument or the value of a parameter is wrong
-    TRACTRIX_BAD_INPUT = 3, // the content of a file, of JSON text or of an array is wrong
-    TRACTRIX_NO_GL = 4      // there is no usable OpenGL
+    TRACTRIX_FAILED = 1,     // a failure at run time: out of memory, disk full, driver error
+    TRACTRIX_USAGE = 2,      // an argument or the value of a parameter is wrong
+    TRACTRIX_BAD_INPUT = 3,  // the content of a file, of JSON text or of an array is wrong
+    TRACTRIX_NO_GL = 4,      // there is no usable OpenGL
+    TRACTRIX_CANCELLED = 130 // a TractrixProgress has returned false
 } TractrixResult;
 typedef struct TractrixError {
     char text[1024]; // "place: what is wrong: what was expected"
@@ -57,6 +58,7 @@ typedef struct TractrixScene TractrixScene;
 typedef struct TractrixSimulation TractrixSimulation;
 typedef struct TractrixRenderer TractrixRenderer;
 typedef struct TractrixPicture TractrixPicture;
+typedef struct TractrixState TractrixState;
 
 // The version of the loaded library: as a number like TRACTRIX_VERSION_NUMBER, and as the text that
 // the programs' --version prints ("0.2.0"; builds between two versions also name the commit).
@@ -85,13 +87,22 @@ TractrixResult tractrix_device_open(TractrixDevice **device, const TractrixDevic
 
 // Makes a device from your own OpenGL context: version 4.3 or newer, by EGL or GLX. The context
 // must be current on the calling thread, now and in every later call that uses this device or
-// anything created from it, including the destroy functions. OpenGL must be in its default state at
-// each call. After the call it is in its default state again, except for the following, which you
-// must set again: viewport, scissor box, and the bindings of programs, vertex arrays, framebuffers,
-// buffers, textures, samplers, images and uniform blocks. TRACTRIX_NO_GL if no context is current
-// or it lacks a required feature.
+// anything created from it, including the destroy functions. Each of these calls saves the state of
+// OpenGL 4.3 core, sets what it needs, and restores your state. It discards pending errors of
+// glGetError. A call fails with TRACTRIX_USAGE while a query of samples, primitives or time is
+// active, or transform feedback that is not paused; and no conditional rendering may be active.
+// TRACTRIX_NO_GL if no context is current or it lacks a required feature.
 TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *error);
 void tractrix_device_destroy(TractrixDevice *device);
+
+// Is told the share of a long call that is done, 0 to 1, about every 50 ms; `data` is that of
+// tractrix_device_set_progress. Returns whether the call may go on. It runs on the device's own
+// thread, or on the calling thread if the device is borrowed, and must not call the library.
+typedef bool TractrixProgress(void *data, double share);
+
+// Sets the function that tractrix_simulation_create calls during the warm-up (parameter `preroll`).
+// If it returns false, the call fails with TRACTRIX_CANCELLED. `progress` NULL: none.
+void tractrix_device_set_progress(TractrixDevice *device, TractrixProgress *progress, void *data);
 
 // Returns a property of the device. `what`: "renderer", "version", "vendor" (OpenGL's strings),
 // "processor" (name of the CPU), "path" (how the context was made, for example "EGL device 0" or
@@ -167,8 +178,8 @@ void tractrix_scene_destroy(TractrixScene *scene);
 
 // Appends a section of hair. `name` identifies the section in messages; NULL: "strands".
 // TRACTRIX_BAD_INPUT if a strand has fewer than 2 or more than 65,535 vertices, a number that is
-// not finite, a coordinate beyond 1e6 m, or two neighbouring vertices that coincide; the error text
-// has the number of the strand, counted from 0.
+// not finite, a coordinate beyond 1e6 m, a colour beyond 0 to 1, a negative thickness, or two
+// neighbouring vertices that coincide; the error text has the number of the strand, counted from 0.
 TractrixResult tractrix_scene_add_strands(TractrixScene *scene, const char *name,
                                           const TractrixStrands *strands, TractrixError *error);
 // Sets the mesh and replaces an earlier one; `mesh` NULL removes it. Hair collides with the mesh,
@@ -226,11 +237,18 @@ void tractrix_simulation_destroy(TractrixSimulation *simulation);
 const char *tractrix_simulation_messages(const TractrixSimulation *simulation);
 
 // Changes a parameter of a running simulation, from the next step or image on. Only parameters with
-// `live` (TractrixParameter) can be changed: those of gravity, wind, camera, sky and ground. The
-// value replaces the keyframes of the parameter, if it has any. TRACTRIX_USAGE if the parameter is
-// not live or the value is wrong.
+// `live` (TractrixParameter) can be changed: those of gravity, wind and camera, and those of
+// drawing alone: colours, shading, light, shadows, exposure, background, samples, level of detail,
+// `aov`. Renderers draw the next image as a new renderer would, but keep an automatic exposure
+// until "exposure" is set. The value replaces the keyframes of the parameter, if it has any.
+// TRACTRIX_USAGE if the parameter is not live or the value is wrong.
 TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const char *name,
                                        const char *text, TractrixError *error);
+
+// The same for one section of hair, from 0; -1: all sections.
+TractrixResult tractrix_simulation_set_section(TractrixSimulation *simulation, int section,
+                                               const char *name, const char *text,
+                                               TractrixError *error);
 
 // Simulates one frame: the video advances by 1 / fps seconds, the scene's time by speed / fps
 // seconds (parameters `fps` and `speed`, which is 1 by default). `head` is the pose of the head,
@@ -264,6 +282,23 @@ TractrixResult tractrix_simulation_place_body_mesh(TractrixSimulation *simulatio
                                                    const float *position, uint32_t vertex_count,
                                                    TractrixError *error);
 double tractrix_simulation_time(const TractrixSimulation *simulation); // scene time, s
+
+// Saves the state of the simulation between two frames. A simulation of an equal scene on a device
+// of the same kind continues from there, bit for bit, as if it had never stopped. The call waits
+// for the GPU. TRACTRIX_USAGE if the caller has moved a body of the scene.
+TractrixResult tractrix_simulation_save(TractrixState **state, TractrixSimulation *simulation,
+                                        TractrixError *error);
+// Returns to a state: its time, and the hair as it was. TRACTRIX_BAD_INPUT if the state is of other
+// hair or solvers, or damaged; the simulation may then be partly changed, and only a restored state
+// makes it usable again.
+TractrixResult tractrix_simulation_restore(TractrixSimulation *simulation,
+                                           const TractrixState *state, TractrixError *error);
+// The bytes of a state, for example for a file, and a state made of them. The bytes belong to the
+// state; `size` may be NULL.
+const void *tractrix_state_bytes(const TractrixState *state, size_t *size);
+TractrixResult tractrix_state_create(TractrixState **state, const void *bytes, size_t size,
+                                     TractrixError *error);
+void tractrix_state_destroy(TractrixState *state);
 
 typedef enum TractrixPart { TRACTRIX_GUIDES = 0, TRACTRIX_FOLLOWERS = 1 } TractrixPart;
 
@@ -334,6 +369,22 @@ void tractrix_renderer_destroy(TractrixRenderer *renderer);
 TractrixResult tractrix_render(TractrixRenderer *renderer, const TractrixView *view,
                                TractrixImage *image, TractrixError *error);
 
+// Data of each pixel besides its colour: arrays [height][width], the first row is the top one;
+// NULL: not wanted. A pixel that no strand covers enough has 0 in depth, tangent and strand.
+typedef struct TractrixLayers {
+    size_t size;
+    float *coverage;  // share of the pixel that hair covers, 0 to 1
+    float *depth;     // distance from the eye along the view, m
+    float *tangent;   // [height][width][3]: unit vector along the strand in world space
+    uint32_t *strand; // number that the strand has in --aov strand and in EXR files, 24 bits
+} TractrixLayers;
+
+// Renders an image as tractrix_render does, and layers of the same state and view in the same call.
+// `layers` NULL: none. The first call with layers makes the renderer's images anew.
+TractrixResult tractrix_render_layers(TractrixRenderer *renderer, const TractrixView *view,
+                                      TractrixImage *image, const TractrixLayers *layers,
+                                      TractrixError *error);
+
 // Reads a PNG, EXR or PFM file. The content decides which, not the name. Alpha is 1 if the file has
 // none. TRACTRIX_BAD_INPUT if the file is of another kind (JPEG, too) or damaged.
 TractrixResult tractrix_picture_read(TractrixPicture **picture, const char *path,
@@ -344,14 +395,25 @@ void tractrix_picture_destroy(TractrixPicture *picture);
 // Writes an image file. The suffix of `path` decides the file format: .png for TRACTRIX_RGBA8 and
 // TRACTRIX_RGBA16; .jpg or .jpeg for TRACTRIX_RGBA8 with all pixels opaque; .exr or .pfm for
 // TRACTRIX_RGBA32F. If all pixels are opaque, the file has no alpha channel. A .pfm file never has
-// one: alpha is dropped. TRACTRIX_USAGE for another suffix or a format that does not suit the
-// suffix.
+// one: alpha is dropped. Floats are written with 32 bits: tractrix_picture_read gives them back.
+// TRACTRIX_USAGE for another suffix or a format that does not suit the suffix; TRACTRIX_BAD_INPUT
+// if a float is not finite.
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error);
 
-// Limits within which two images count as the same, as the options of tractrix-compare. If all
-// members but `size` are 0, only equal images are the same. TRACTRIX_USAGE if a limit is out of
-// range or if neither pixels nor FLIP count.
+typedef struct TractrixWriteOptions {
+    size_t size;
+    bool half; // .exr: 16 bits a channel, with a precision of 1 / 2048
+} TractrixWriteOptions;
+
+// The same with options; NULL: none. TRACTRIX_USAGE if `half` does not suit the suffix or a value
+// is beyond 65,504.
+TractrixResult tractrix_image_write_with(const TractrixImage *image, const char *path,
+                                         const TractrixWriteOptions *options, TractrixError *error);
+
+// Limits within which two images pass, as the options of tractrix-compare. If all members but
+// `size` are 0, only equal images pass. TRACTRIX_USAGE if a limit is out of range or if there is
+// none.
 typedef struct TractrixLimits {
     size_t size;
     double pixel_tolerance; // a pixel fails if a channel differs by more than this, in levels of 0
@@ -359,6 +421,10 @@ typedef struct TractrixLimits {
     double max_failing_percent; // how many of the compared pixels may fail, 0 to 100 %
     double max_flip;            // largest allowed mean of FLIP, at most 1; 0 or less: no such limit
     double pixels_per_degree;   // viewing distance for FLIP, 1 to 1000; 0: the default, 67
+    double max_difference;      // largest allowed difference of a channel, at most 255 levels; 0 or
+                                // less: no such limit
+    double max_local_difference; // largest allowed mean difference of a channel over 16 x 16
+                                 // pixels, at most 255 levels; 0 or less: no such limit
 } TractrixLimits;
 
 typedef struct TractrixFigures { // docs/compare.md defines the figures
@@ -369,16 +435,20 @@ typedef struct TractrixFigures { // docs/compare.md defines the figures
     // `rmse` is in levels, `psnr` in dB; `flip` is the mean of FLIP and `flip_most` its largest
     // value, 0 to 1. Equal images: rmse 0, psnr INFINITY, ssim 1, flip and flip_most 0.
     double rmse, psnr, ssim, flip, flip_most;
-    bool same; // the images are the same within the limits
+    bool same;               // as `within`, by an older name
+    bool within;             // the images are within the limits
+    bool equal;              // there is no visible difference
+    int local_at[2];         // x, y of the window below: its top left pixel
+    double local_difference; // largest mean difference of a channel over 16 x 16 pixels, in levels
 } TractrixFigures;
 
 // Compares two images of the same size. Their formats may differ. `mask` is an image of the same
 // size: pixels where the mask is black are ignored, pixels where it is white (luma at least half)
 // or transparent are compared; NULL: all pixels are compared. `map` is an array [height][width]
 // that receives FLIP's error of each pixel, NaN for ignored pixels; NULL: not wanted. `limits`
-// NULL: only equal images are the same. If the images differ, the function still returns
-// TRACTRIX_OK; see figures->same. TRACTRIX_USAGE if the sizes differ, TRACTRIX_BAD_INPUT if the
-// mask is all black.
+// NULL: only equal images pass. If the images differ, the function still returns TRACTRIX_OK; see
+// figures->within. TRACTRIX_USAGE if the sizes differ, TRACTRIX_BAD_INPUT if the mask is all black
+// or a float of an image is not finite.
 TractrixResult tractrix_compare(TractrixFigures *figures, float *map, const TractrixImage *a,
                                 const TractrixImage *b, const TractrixImage *mask,
                                 const TractrixLimits *limits, TractrixError *error);

@@ -3,7 +3,8 @@
 
 #include "base/parallel.h"
 #include "base/room.h"
-#include "gpu/gl_defaults.h"
+#include "gpu/gl_state.h"
+#include "gpu/gpu_current.h"
 #include "gpu/shader.h"
 
 #include <stdlib.h>
@@ -71,11 +72,13 @@ Result library_on_device(TractrixDevice *device, LibraryWork *work, void *data, 
         return error_set(error, RESULT_NO_GL,
                          "the device was opened before fork(): expected a device of this process");
     if (!device->borrowed) return ask(device, work, data, error);
+    GlState state;
     TRY(gpu_enter(&device->gpu, error));
-#ifndef NDEBUG
-    if (work != close_gpu) TRY(gl_defaults_check(error));
-#endif
-    Result result = work(data, error);
+    Result result = gl_state_take(&state, error);
+    if (result == RESULT_OK) {
+        result = work(data, error);
+        gl_state_restore(&state);
+    }
     gpu_leave();
     return result;
 }
@@ -212,11 +215,17 @@ TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *er
 {
     LIBRARY_CALL;
     Error why = {{0}};
+    GlState state;
     if (!device) return library_refuse(error, "device: got NULL");
     Result result = create(device, &why);
     if (result != RESULT_OK) return library_end(result, &why, error);
     (*device)->borrowed = true;
-    result = gpu_borrow(&(*device)->gpu, &why);
+    result = gpu_current_check(&why);
+    THEN(result, gl_state_take(&state, &why));
+    if (result == RESULT_OK) {
+        result = gpu_borrow(&(*device)->gpu, &why);
+        gl_state_restore(&state);
+    }
     if (result == RESULT_OK) {
         gpu_leave();
     } else {
@@ -224,6 +233,14 @@ TractrixResult tractrix_device_borrow(TractrixDevice **device, TractrixError *er
         *device = NULL;
     }
     return library_end(result, &why, error);
+}
+
+void tractrix_device_set_progress(TractrixDevice *device, TractrixProgress *progress, void *data)
+{
+    LIBRARY_CALL;
+    if (!device) return;
+    device->progress = progress;
+    device->progress_data = data;
 }
 
 const char *tractrix_device_text(const TractrixDevice *device, const char *what)

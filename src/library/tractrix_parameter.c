@@ -21,6 +21,55 @@ static const char *const LIVE[] = {
     "eye",     "target", "fov",  "camera_up",   "sky",         "ground",
 };
 
+// Parameters of drawing alone: renderers are made anew when they change.
+static const char *const LOOKS[] = {
+    "aov",
+    "ambient",
+    "azimuthal_roughness",
+    "background",
+    "color",
+    "color_variation",
+    "cone_angle",
+    "diffuse",
+    "environment_strength",
+    "environment_turn",
+    "exponent1",
+    "exponent2",
+    "exposure",
+    "floor_color",
+    "lobes",
+    "lod_end",
+    "lod_min",
+    "lod_start",
+    "lod_width",
+    "melanin",
+    "melanin_redness",
+    "mesh_color",
+    "mesh_shading",
+    "opacity",
+    "refraction",
+    "roughness",
+    "samples",
+    "scalp_tint",
+    "scatter",
+    "scatter_cells",
+    "scatter_orders",
+    "scatter_strands",
+    "shading",
+    "shadow",
+    "shadow_opacity",
+    "shadow_size",
+    "shadow_spacing",
+    "shadow_strands",
+    "specular1",
+    "specular2",
+    "tip_color",
+    "tip_length",
+    "tone_map",
+    "transmission",
+    "warmth_variation",
+};
+
 static const char *const KINDS[] = {
     [PARAM_BOOL] = "bool",           [PARAM_INT] = "int",
     [PARAM_UINT] = "uint",           [PARAM_FLOAT] = "float",
@@ -90,7 +139,12 @@ static void prepare(void)
 
 bool library_is_live(const ParamInfo *info)
 {
-    return lists(LIVE, sizeof LIVE / sizeof *LIVE, info->name);
+    return library_is_look(info) || lists(LIVE, sizeof LIVE / sizeof *LIVE, info->name);
+}
+
+bool library_is_look(const ParamInfo *info)
+{
+    return lists(LOOKS, sizeof LOOKS / sizeof *LOOKS, info->name);
 }
 
 const ParamInfo *library_parameter(const char *name)

@@ -9,6 +9,7 @@
 #include "image/pfm.h"
 #include "image/png.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,7 +109,23 @@ static bool is_opaque(const TractrixImage *image)
     return y == image->height;
 }
 
-Result library_copy_image(Image *to, const TractrixImage *from, Error *error)
+// NaN equals nothing, and no file of an image may hold it.
+static Result check_finite(const Image *image, const char *name, Error *error)
+{
+    const float *at = (const float *)(const void *)image->pixels;
+    int channels = image->channels;
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)channels;
+    for (size_t i = 0; i < count && image->kind == IMAGE_FLOAT; ++i) {
+        if (isfinite(at[i])) continue;
+        size_t pixel = i / (size_t)channels, width = (size_t)image->width;
+        return error_set(error, RESULT_BAD_INPUT,
+                         "%s: pixel %zu, %zu: got %g in channel %d: expected finite numbers", name,
+                         pixel % width, pixel / width, (double)at[i], (int)(i % (size_t)channels));
+    }
+    return RESULT_OK;
+}
+
+Result library_copy_image(Image *to, const TractrixImage *from, const char *name, Error *error)
 {
     TRY(image_create_kind(to, from->width, from->height, is_opaque(from) ? 3 : CHANNELS,
                           FORMATS[from->format].kind, error));
@@ -120,7 +137,9 @@ Result library_copy_image(Image *to, const TractrixImage *from, Error *error)
         else
             FORMATS[from->format].take(row, row_of(from, y), from->width);
     }
-    return RESULT_OK;
+    Result result = check_finite(to, name, error);
+    if (result != RESULT_OK) image_destroy(to);
+    return result;
 }
 
 // --- Files.
@@ -188,7 +207,19 @@ static bool ends_with(const char *path, const char *suffix)
     return length > own && strcasecmp(path + length - own, suffix) == 0;
 }
 
-static Result encode(const char *path, const Image *image, Bytes *bytes, Error *error)
+// Half floats reach 65,504; larger values would become infinite.
+static Result check_halves(const char *path, const Image *image, Error *error)
+{
+    const float *at = (const float *)(const void *)image->pixels;
+    size_t count = image_size(image) / sizeof *at;
+    for (size_t i = 0; i < count; ++i)
+        if (fabsf(at[i]) > 65504)
+            return error_set(error, RESULT_USAGE, "%s: got %g: expected at most 65504 with half",
+                             path, (double)at[i]);
+    return RESULT_OK;
+}
+
+static Result encode(const char *path, const Image *image, bool half, Bytes *bytes, Error *error)
 {
     bool floats = image->kind == IMAGE_FLOAT, png = ends_with(path, ".png"),
          exr = ends_with(path, ".exr"), pfm = ends_with(path, ".pfm"),
@@ -202,26 +233,37 @@ static Result encode(const char *path, const Image *image, Bytes *bytes, Error *
     if (jpeg && (image->kind != IMAGE_8 || image->channels != 3))
         return error_set(error, RESULT_USAGE,
                          "%s: got an image of 16 bits or with alpha: expected .png", path);
+    if (half && !exr) return error_set(error, RESULT_USAGE, "%s: half floats: expected .exr", path);
+    if (half) TRY(check_halves(path, image, error));
     if (jpeg) return jpeg_encode(image, JPEG_FINE, bytes, error);
     if (png) return png_encode(image, NULL, bytes, error);
     return pfm ? pfm_encode(image, bytes, error)
-               : exr_file_encode(&(ExrFile){.image = image}, bytes, error);
+               : exr_file_encode(&(ExrFile){.image = image, .floats = !half}, bytes, error);
+}
+
+TractrixResult tractrix_image_write_with(const TractrixImage *image, const char *path,
+                                         const TractrixWriteOptions *options, TractrixError *error)
+{
+    LIBRARY_CALL;
+    Error why = {{0}};
+    TractrixImage from;
+    TractrixWriteOptions own = {0};
+    Image copy = {0};
+    Bytes bytes = {0};
+    if (!path) return library_refuse(error, "path: got NULL");
+    Result result = library_take_image(&from, image, "image", &why);
+    if (options) THEN(result, library_take(&own, sizeof own, options, sizeof own, "options", &why));
+    THEN(result, library_copy_image(&copy, &from, "image", &why));
+    THEN(result, encode(path, &copy, own.half, &bytes, &why));
+    THEN(result, bytes_write_file(&bytes, path, &why));
+    bytes_destroy(&bytes);
+    image_destroy(&copy);
+    return library_end(result, &why, error);
 }
 
 TractrixResult tractrix_image_write(const TractrixImage *image, const char *path,
                                     TractrixError *error)
 {
     LIBRARY_CALL;
-    Error why = {{0}};
-    TractrixImage from;
-    Image copy = {0};
-    Bytes bytes = {0};
-    if (!path) return library_refuse(error, "path: got NULL");
-    Result result = library_take_image(&from, image, "image", &why);
-    THEN(result, library_copy_image(&copy, &from, &why));
-    THEN(result, encode(path, &copy, &bytes, &why));
-    THEN(result, bytes_write_file(&bytes, path, &why));
-    bytes_destroy(&bytes);
-    image_destroy(&copy);
-    return library_end(result, &why, error);
+    return tractrix_image_write_with(image, path, NULL, error);
 }

@@ -6,6 +6,8 @@
 #include "formats/strands_mend.h"
 #include "scene/scene_param.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -379,12 +381,27 @@ static void put_points(float (*to)[3], const float *from, size_t count, double u
     }
 }
 
+// Checks that the numbers of each vertex are 0 to `most`.
+static Result check_range(const Strands *strands, const float *numbers, uint32_t each, float most,
+                          const char *name, const char *expected, Error *error)
+{
+    for (uint32_t s = 0; numbers && s < strands->strand_count; ++s)
+        for (size_t i = (size_t)each * strands->first[s]; i < (size_t)each * strands->first[s + 1];
+             ++i)
+            if (numbers[i] < 0 || (numbers[i] > most && isfinite(numbers[i])))
+                return error_set(error, RESULT_BAD_INPUT, "%s: strand %u: got %g: expected %s",
+                                 name, s, (double)numbers[i], expected);
+    return RESULT_OK;
+}
+
 static Result copy_strands(Strands *to, const TractrixStrands *from, uint32_t vertices,
                            Error *error)
 {
     TRY(strands_create(to, from->strand_count, vertices, error));
     for (uint32_t s = 0; s < from->strand_count; ++s)
         to->first[s + 1] = to->first[s] + (from->sizes ? from->sizes[s] : from->vertices_each);
+    TRY(check_range(to, from->thickness, 1, FLT_MAX, "thickness", "0 or more", error));
+    TRY(check_range(to, from->color, 4, 1, "color", "linear light and opacity of 0 to 1", error));
     put_points(to->position, from->position, vertices, from->metres_per_unit, from->up_z);
     to->relative_widths = true;
     if (copy_floats(&to->vertex_thickness, from->thickness, vertices) &&

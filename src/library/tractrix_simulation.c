@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "library/library.h"
 
+#include "base/clock.h"
 #include "base/quote.h"
 #include "scene/effects.h"
 #include "scene/scalp_guess.h"
 #include "strands/follow_plan.h"
 
+#include <epoxy/gl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -100,6 +102,30 @@ static Result load(TractrixSimulation *simulation, const TractrixScene *from, FI
     return RESULT_OK;
 }
 
+// Simulates the warm-up. With a TractrixProgress, the device is waited for now and then, so that
+// the share is that of the steps that are done, not of those that are queued.
+static Result settle(TractrixSimulation *simulation, Error *error)
+{
+    const TractrixDevice *device = simulation->device;
+    Simulation *settled = &simulation->simulation;
+    const double interval_ms = 50, whole = (double)-settled->step;
+    double last_ms = clock_ms();
+    int wait = 1, steps = 0; // wait: steps from one report to the next
+    while (simulation_settle(settled)) {
+        if (!device->progress || ++steps < wait) continue;
+        glFinish();
+        double now_ms = clock_ms(), took_ms = now_ms - last_ms;
+        if (!device->progress(device->progress_data, 1 + (double)settled->step / whole))
+            return error_set(error, RESULT_INTERRUPTED,
+                             "cancelled after %.0f %% of the warm-up (preroll)",
+                             100 * (1 + (double)settled->step / whole));
+        wait = took_ms < interval_ms / 2 ? 2 * wait : took_ms > interval_ms ? (wait + 1) / 2 : wait;
+        last_ms = clock_ms();
+        steps = 0;
+    }
+    return RESULT_OK;
+}
+
 static Result open_simulation(void *data, Error *error)
 {
     TractrixSimulation *simulation = data;
@@ -107,7 +133,7 @@ static Result open_simulation(void *data, Error *error)
     gpu_timer_create(&simulation->timer, false, gpu->software);
     TRY(simulation_create(&simulation->simulation, gpu, &simulation->timer, &simulation->scene,
                           simulation->assets.strands, simulation->assets.meshes, error));
-    while (simulation_settle(&simulation->simulation)) continue;
+    TRY(settle(simulation, error));
     simulation_pose(&simulation->simulation);
     return gpu_check("simulating", error);
 }
@@ -161,18 +187,36 @@ double tractrix_simulation_time(const TractrixSimulation *simulation)
 
 // --- Stepping.
 
-static Result set(TractrixSimulation *simulation, const char *name, const char *text, Error *error)
+// A section whose parameters change over time has them evaluated in `now`.
+static Result set_now(TractrixSimulation *simulation, int section, const ParamInfo *info,
+                      const char *text, Error *error)
+{
+    for (uint32_t i = 0; info->scope == SCOPE_SECTION && i < simulation->scene.section_count; ++i)
+        if (section < 0 || (uint32_t)section == i)
+            TRY(params_parse(info, &simulation->simulation.sections[i].now, text, error));
+    return RESULT_OK;
+}
+
+static Result set(TractrixSimulation *simulation, int section, const char *name, const char *text,
+                  Error *error)
 {
     const ParamInfo *info = library_parameter(name);
     if (!info) return library_refuse_name(name, error);
     if (!library_is_live(info))
         return error_set(error, RESULT_USAGE,
                          "%s: cannot change during a simulation: expected a live parameter, such "
-                         "as wind or eye (tractrix_parameter: live)",
+                         "as wind or color (tractrix_parameter: live)",
                          name);
-    Result result = scene_set(&simulation->scene, -1, info, text, error);
+    int count = (int)simulation->scene.section_count;
+    if (section < -1 || section >= (info->scope == SCOPE_SECTION ? count : 0))
+        return error_set(error, RESULT_USAGE, "section: got %d for %s, expected -1%s", section,
+                         info->name, info->scope == SCOPE_SECTION ? " or a section" : "");
+    Result result = scene_set(&simulation->scene, section, info, text, error);
+    THEN(result, set_now(simulation, section, info, text, error));
     if (result != RESULT_OK) return error_prefix(error, result, "%s: ", info->name);
     simulation->aims += info->group == GROUP_CAMERA;
+    simulation->looks += library_is_look(info);
+    simulation->exposures += strcmp(info->name, "exposure") == 0;
     return RESULT_OK;
 }
 
@@ -183,7 +227,18 @@ TractrixResult tractrix_simulation_set(TractrixSimulation *simulation, const cha
     Error why = {{0}};
     if (!simulation || !name || !text)
         return library_refuse(error, "simulation, name or text: got NULL");
-    return library_end(set(simulation, name, text, &why), &why, error);
+    return library_end(set(simulation, -1, name, text, &why), &why, error);
+}
+
+TractrixResult tractrix_simulation_set_section(TractrixSimulation *simulation, int section,
+                                               const char *name, const char *text,
+                                               TractrixError *error)
+{
+    LIBRARY_CALL;
+    Error why = {{0}};
+    if (!simulation || !name || !text)
+        return library_refuse(error, "simulation, name or text: got NULL");
+    return library_end(set(simulation, section, name, text, &why), &why, error);
 }
 
 // Moves a body to where the caller wants it at the time `after`. If the caller says nothing, it
@@ -192,6 +247,7 @@ static Result place(TractrixSimulation *simulation, uint32_t b, double before, d
                     Error *error)
 {
     LibraryPlace *next = &simulation->next[b];
+    simulation->is_driven[b] |= next->posed || next->mesh;
     MovingBody *moved = &simulation->simulation.bodies[b];
     if (next->posed) {
         TRY(moving_body_expect_motion(moved, &simulation->device->gpu, error));

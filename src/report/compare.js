@@ -12,6 +12,7 @@ const OUTCOMES = {
     missing: [2, "warn", "Missing"],
     new: [1.5, "warn", "New"],
     updated: [1, "warn", "Updated"],
+    "within limits": [0.5, "good", "Within limits"],
     same: [0, "good", "Same"],
 };
 const MODES = [
@@ -242,8 +243,9 @@ async function showPair() {
 // What is left to say behind the outcome.
 function sentence(pair) {
     if (pair.rmse !== undefined && pair.equal) return "every pixel is equal";
+    if (pair.outcome === "different" && pair.exact) return "the same driver and processor drew both, so they must be equal";
     if (pair.outcome === "different") return figure(100 * pair.failing_pixels / pair.compared_pixels, 3) + " % of the pixels fail";
-    if (pair.rmse !== undefined) return "within the limits";
+    if (pair.rmse !== undefined) return pair.largest_difference === 0 ? "they look equal" : "at most " + figure(pair.largest_difference, 3) + " levels";
     return pair.text || "";
 }
 
@@ -555,7 +557,7 @@ byId("zoom-fit").addEventListener("click", () => fit());
 // --- Figures.
 
 function metricRows(pair) {
-    const limits = limitsOf(pair), pixels = pair.compared_pixels;
+    const limits = pair.exact ? { max_difference: 0 } : limitsOf(pair), pixels = pair.compared_pixels;
     const percent = limits.max_failing_percent !== undefined;
     const most = percent ? limits.max_failing_percent : limits.max_failing_pixels;
     const share = 100 * pair.failing_pixels / pixels;
@@ -563,16 +565,19 @@ function metricRows(pair) {
     where.addEventListener("click", () => goTo(...pair.at_pixel));
     const largest = element("span", {}, figure(pair.largest_difference));
     if (pair.largest_difference > 0) largest.append(" ", where);
-    return [
+    const row = (name, value, most, shown) => [name, shown || figure(value), most === undefined ? "" : figure(most), most !== undefined && value > most];
+    const rows = [
         // name, value, limit, whether it is broken
         ["Failing pixels", pair.failing_pixels + (share ? "\u00a0(" + figure(share, 3) + "\u00a0%)" : ""), most === undefined ? "" : figure(most) + (percent ? "\u00a0%" : ""), most !== undefined && (percent ? share : pair.failing_pixels) > most],
-        ["FLIP, mean", figure(pair.flip), limits.max_flip === undefined ? "" : figure(limits.max_flip), limits.max_flip !== undefined && pair.flip > limits.max_flip],
-        ["FLIP, largest", figure(pair.flip_largest), "", false],
-        ["Largest off by", largest, "", false],
-        ["RMSE", figure(pair.rmse), "", false],
+        row("FLIP, mean", pair.flip, limits.max_flip),
+        row("FLIP, largest", pair.flip_largest),
+        row("Largest off by", pair.largest_difference, limits.max_difference, largest),
+        row("Local difference", pair.local_difference, limits.max_local_difference),
+        row("RMSE", pair.rmse),
         ["PSNR", pair.psnr_db === null ? "∞ dB" : figure(pair.psnr_db) + " dB", "", false],
-        ["SSIM", figure(pair.ssim, 6), "", false],
     ];
+    if (pair.ssim !== undefined) rows.push(["SSIM", figure(pair.ssim, 6), "", false]);
+    return rows;
 }
 
 function metrics(pair) {
@@ -584,7 +589,7 @@ function metrics(pair) {
     const of = limitsOf(pair);
     const levels = { platform: "the platform's own goldens.", class: "goldens of the class of devices.", common: "goldens of all platforms." };
     const limits = [
-        pair.level ? "The limits are those of " + levels[pair.level] : "",
+        pair.exact ? "The same renderer, driver and processor drew both images, so the limits of the level do not count." : pair.level ? "The limits are those of " + levels[pair.level] : "",
         masked ? "A mask leaves out " + figure(100 * masked / (masked + pair.compared_pixels), 3) + " % of the pixels: " + pair.mask + "." : "",
         of.pixel_tolerance === undefined ? "" : of.pixel_tolerance === 0 ? "A pixel fails if any channel differs."
             : "A pixel fails if a channel is off by more than " + figure(of.pixel_tolerance) + " of 255 levels.",
@@ -642,9 +647,9 @@ function toggleMark() {
 // --- The beginning.
 
 function drawVerdict() {
-    const bad = pairs.filter((pair) => !["same", "updated"].includes(outcomeOf(pair))).length;
+    const bad = pairs.filter((pair) => !["same", "within limits", "updated"].includes(outcomeOf(pair))).length;
     const count = data.images, all = count === 1 ? "The image is" : count === 2 ? "Both images are" : "All " + count + " images are";
-    const words = bad === 0 ? all + " within the limits" : count === 1 ? "The image needs a look" : bad + " of " + count + " images need a look".replace("need", bad === 1 ? "needs" : "need");
+    const words = bad === 0 ? all + (pairs.some((pair) => pair.outcome === "within limits") || pairs.length < count ? " within the limits" : " the same") : count === 1 ? "The image needs a look" : bad + " of " + count + " images need a look".replace("need", bad === 1 ? "needs" : "need");
     byId("verdict").textContent = words;
     byId("verdict").className = bad ? "bad" : "good";
     document.title = (bad ? bad + " bad: " : "good: ") + "tractrix-compare";
@@ -710,7 +715,7 @@ drawVerdict();
 drawOutcomes();
 drawList();
 if (pairs.length) choose(readAddress() || pairs[0]);
-else document.querySelector("main").replaceChildren(element("p", { class: "note", text: "Only images that are not the same are listed, and there is none." }));
+else document.querySelector("main").replaceChildren(element("p", { class: "note", text: "Only images that fail are listed, and there is none." }));
 addEventListener("hashchange", () => {
     const asked = readAddress();
     if (asked) choose(asked);

@@ -210,6 +210,19 @@ Result fingerprint_create(Fingerprint *fingerprint, const Scene *scene, const As
     return RESULT_OK;
 }
 
+Result fingerprint_of_scene(uint64_t *hash, const Scene *scene, const Assets *assets,
+                            const Framing *framing, Error *error)
+{
+    *hash = FNV_START;
+    TRY(add_values(hash, scene, error));
+    TRY(add_files(hash, scene, assets, error));
+    *hash = add(*hash, &framing->hair, sizeof framing->hair);
+    *hash = add(*hash, &framing->all, sizeof framing->all);
+    *hash = add(*hash, framing->target, sizeof framing->target);
+    *hash = add(*hash, framing->eye, sizeof framing->eye);
+    return RESULT_OK;
+}
+
 void fingerprint_destroy(Fingerprint *fingerprint)
 {
     image_texts_destroy(&fingerprint->origin);

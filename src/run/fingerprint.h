@@ -31,6 +31,11 @@ typedef struct Fingerprint {
 Result fingerprint_create(Fingerprint *fingerprint, const Scene *scene, const Assets *assets,
                           const Framing *framing, float exposure, const Gpu *gpu, const char *maker,
                           Error *error);
+// A hash of what the exposure of a scene depends on, and of more: values, hair, meshes, maps and
+// framing. RESULT_BAD_INPUT or RESULT_FAILED if a map cannot be read or memory is short.
+Result fingerprint_of_scene(uint64_t *hash, const Scene *scene, const Assets *assets,
+                            const Framing *framing, Error *error);
+
 void fingerprint_destroy(Fingerprint *fingerprint);
 
 // The number of frame `frame` as 16 hexadecimal digits, including its camera, lights and caption.

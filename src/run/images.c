@@ -212,6 +212,7 @@ static Result open_layers(Images *images, const RendererOptions *options, GpuTim
     for (int l = 0; l < EXR_LAYERS; ++l) {
         RendererOptions layer = *options;
         layer.aov = aovs[l];
+        layer.kind = IMAGE_FLOAT;
         layer.background[3] = 1;
         TRY(open_one(images, &images->layers[l], &layer, timer, error));
     }

@@ -40,6 +40,7 @@ static CompareResult compare(Image a, Image b, const CompareLimits *limits)
 static CompareResult compare_colors(int channels, const uint8_t a[4], const uint8_t b[4])
 {
     CompareLimits limits = compare_limits_default();
+    limits.figures = COMPARE_SSIM | COMPARE_FLIP;
     return compare(make_image(channels, a), make_image(channels, b), &limits);
 }
 
@@ -49,7 +50,7 @@ static void equal_pictures_score_exactly_0(void **state)
     static const uint8_t color[4] = {1, 100, 200, 50};
     for (int channels = 3; channels <= 4; ++channels) {
         CompareResult result = compare_colors(channels, color, color);
-        assert_true(result.same && result.failing == 0 && result.largest == 0);
+        assert_true(result.within && result.failing == 0 && result.largest == 0);
         assert_true(result.rmse == 0 && result.flip == 0 && result.flip_most == 0);
         assert_true(result.ssim == 1 && isinf(result.psnr));
     }
@@ -73,7 +74,7 @@ static void the_two_knobs_of_pixels_are_apart(void **state)
         double tolerance, failing;
         bool percent;
         uint64_t count;
-        bool same;
+        bool within;
     } cases[] = {
         {0, 0, false, 3, false},   {0, 2, false, 3, false},  {0, 3, false, 3, true},
         {4.5, 2, false, 3, false}, {5, 2, false, 2, true},   {9, 0, false, 1, false},
@@ -86,7 +87,7 @@ static void the_two_knobs_of_pixels_are_apart(void **state)
         limits.max_failing_percent = cases[i].percent;
         CompareResult result = compare_three(limits);
         assert_int_equal(result.failing, cases[i].count);
-        assert_int_equal(result.same, cases[i].same);
+        assert_int_equal(result.within, cases[i].within);
         assert_true(result.largest == 20 && result.at[0] == 4 && result.at[1] == 2);
         assert_true(fabs(result.rmse - sqrt((25 + 81 + 400) / (3.0 * W * H))) < 1e-12);
     }
@@ -100,13 +101,49 @@ static void flip_is_a_limit_of_its_own(void **state)
     limits.flip_matters = true;
     limits.max_flip = 1;
     double flip = compare_three(limits).flip;
-    assert_true(flip > 0 && compare_three(limits).same);
+    assert_true(flip > 0 && compare_three(limits).within);
     limits.max_flip = flip;
-    assert_true(compare_three(limits).same);
+    assert_true(compare_three(limits).within);
     limits.max_flip = 0.99 * flip;
-    assert_false(compare_three(limits).same);
+    assert_false(compare_three(limits).within);
     limits.max_flip = 1, limits.pixels_matter = true;
-    assert_false(compare_three(limits).same);
+    assert_false(compare_three(limits).within);
+}
+
+// A window of 16 x 16 pixels, cut off by the image's height of 10: a block of 2 x 2 pixels, lighter
+// by 40 levels, beside one that is darker by 40, whose sum is 0. The window at x = 8 has only the
+// first, that at x = 0 both. Blocks lie within a row of cells of 8 pixels.
+static void a_local_difference_is_a_mean_with_its_sign(void **state)
+{
+    (void)state;
+    static const uint8_t grey[4] = {100, 100, 100};
+    Image a = make_image(3, grey), b = make_image(3, grey);
+    for (int y = 2; y < 4; ++y)
+        for (int x = 0; x < 2; ++x) {
+            b.pixels[3 * (y * W + 9 + x) + 1] = 140;
+            b.pixels[3 * (y * W + 4 + x) + 1] = 60;
+        }
+    CompareLimits limits = compare_limits_default();
+    limits.pixels_matter = false;
+    limits.local_matters = true;
+    CompareResult result = compare(a, b, &limits);
+    assert_true(result.local == 4 * 40 / 256.0 && result.local_at[0] == 8);
+    assert_int_equal(result.local_at[1], 0);
+    assert_false(result.within);
+    limits.max_local = result.local;
+    assert_true(compare_three(limits).within); // 20 / 256 at most
+}
+
+static void a_single_pixel_can_be_too_different(void **state)
+{
+    (void)state;
+    CompareLimits limits = compare_limits_default();
+    limits.max_failing = 3;
+    limits.difference_matters = true;
+    for (int most = 19; most <= 20; ++most) {
+        limits.max_difference = most;
+        assert_int_equal(compare_three(limits).within, most == 20);
+    }
 }
 
 // Expected values computed by hand. Black with half alpha is invisible over black; over white it
@@ -125,7 +162,7 @@ static void the_worse_of_two_backgrounds_counts(void **state)
            over_black = c1 / (128 * 128 + c1);
     assert_true(fabs(compare_colors(4, none, half).ssim - over_white) < 1e-6);
     assert_true(fabs(compare_colors(4, none, white_half).ssim - over_black) < 1e-6);
-    assert_true(compare_colors(4, none, red).largest == 0 && compare_colors(4, none, red).same);
+    assert_true(compare_colors(4, none, red).largest == 0 && compare_colors(4, none, red).within);
 }
 
 // At each pixel the map has the larger error over the two backgrounds: here over black at one pixel
@@ -165,7 +202,7 @@ static void a_share_of_failing_pixels_is_that_of_the_compared_ones(void **state)
         CompareResult result;
         limits.max_failing = percent;
         assert_int_equal(compare_images(&result, NULL, &a, &b, &mask, &limits, NULL), RESULT_OK);
-        assert_int_equal(result.same, percent >= 5); // one pixel of 20
+        assert_int_equal(result.within, percent >= 5); // one pixel of 20
     }
     mask_destroy(&mask);
     image_destroy(&a);
@@ -179,7 +216,7 @@ static void a_picture_without_alpha_is_opaque(void **state)
     CompareLimits limits = compare_limits_default();
     assert_true(compare(make_image(3, color), make_image(4, color), &limits).largest == 0);
     CompareResult result = compare(make_image(3, color), make_image(4, clear), &limits);
-    assert_false(result.same);
+    assert_false(result.within);
     // Over white the darkest channel moves by (255 - 10) / 255.
     assert_true(fabs(result.largest - 245.0 / 255) < 1e-5);
 }
@@ -333,6 +370,8 @@ int main(void)
         cmocka_unit_test(equal_pictures_score_exactly_0),
         cmocka_unit_test(the_two_knobs_of_pixels_are_apart),
         cmocka_unit_test(flip_is_a_limit_of_its_own),
+        cmocka_unit_test(a_local_difference_is_a_mean_with_its_sign),
+        cmocka_unit_test(a_single_pixel_can_be_too_different),
         cmocka_unit_test(the_worse_of_two_backgrounds_counts),
         cmocka_unit_test(the_map_has_the_worse_of_two_backgrounds),
         cmocka_unit_test(a_share_of_failing_pixels_is_that_of_the_compared_ones),

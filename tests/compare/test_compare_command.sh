@@ -13,7 +13,9 @@ run 0 $other $other
 run 0 -q $a $a; silent out; silent err
 
 claim "different images give status 1"
-run 1 $a $b; says "different: RMSE"; says "1 different; largest FLIP"; silent err
+run 1 $a $b; says "different: RMSE"; says "1 different; largest RMSE"; silent err
+if grep -qE "SSIM|FLIP" "$work/out"; then bad "figures that no limit needs"; else good; fi
+run 1 $a $b --all-metrics; says "SSIM 0."; says "1 different; largest FLIP"
 run 1 -q $a $b; silent out; silent err
 run 1 $a $other; says "size mismatch: 160 x 120 and 128 x 128 pixels"
 
@@ -146,5 +148,22 @@ run 2 "$work/own/a.png" "$work/own/b.png" --json "$work/own/a.png"; one_line; sa
 run 2 "$work/own/a.png" "$work/own/b.png" --json "$work/x" --junit "$work/x"; one_line; says "--junit"
 run 2 "$work/own" tests/golden --sheet "$work/own"; one_line; says "--sheet"
 equal "$work/own/a.png" tests/golden/curls_still.png
+
+claim "images in subfolders are paired by their relative names"
+for d in nest_a nest_b; do mkdir -p "$work/$d/walk/fast" "$work/$d/.cache"; cp $a "$work/$d/front.png"; cp $a "$work/$d/walk/1.png"; done
+cp $b "$work/nest_b/walk/1.png"; cp $a "$work/nest_a/walk/fast/2.png"; cp $a "$work/nest_b/walk/3.png"; cp $a "$work/nest_b/.cache/x.png"
+run 1 "$work/nest_a" "$work/nest_b/" --sheet "$work/nest_sheets"
+says "walk/1.png: different"; says "walk/fast/2.png: missing"; says "walk/3.png: new"; says "4 images: 1 same, 1 different, 1 new, 1 missing"; is_png "$work/nest_sheets/walk/1.png"
+run 1 "$work/nest_a" "$work/nest_b" --only walk/%d.png; says "2 images: 1 different, 1 new"
+mkdir -p "$work/nest_masks/walk"; cp $a "$work/nest_masks/walk/1.png"
+run 1 "$work/nest_a" "$work/nest_b" --mask "$work/nest_masks"; says "pixels ignored"
+mv "$work/nest_masks/walk/1.png" "$work/nest_masks/1.png"; run 3 "$work/nest_a" "$work/nest_b" --mask "$work/nest_masks"; says "the mask 1.png belongs to no image"
+run 1 "$work/nest_a" "$work/nest_b" --update; equal "$work/nest_a/walk/3.png" $a; equal "$work/nest_a/walk/1.png" $b
+ln -s .. "$work/nest_a/walk/loop"; run 3 "$work/nest_a" "$work/nest_b"; one_line; says "folders in each other"
+
+claim "--platform leaves the folders of platforms and classes to their levels"
+mkdir -p "$work/levels/cpu" "$work/levels/nvidia-h100-550" "$work/levels/walk"; cp $a "$work/levels/cpu/x.png"; cp $a "$work/levels/nvidia-h100-550/x.png"; cp $a "$work/levels/walk/1.png"
+mkdir -p "$work/levels_new/walk"; cp $a "$work/levels_new/x.png"
+run 1 "$work/levels" "$work/levels_new" --platform llvmpipe-x; says "x.png: same"; says "walk/1.png: missing"; says "2 images: 1 same, 1 missing"
 
 finish

@@ -54,6 +54,11 @@ goldens 0 --update; says "3 references updated"
 goldens 0; says "3 images: 3 same"; none "$work/result/sheets/plain.png"; silent err
 in_file "$work/result/report.xml" 'tests="3" failures="0"'; in_file "$work/result/report.json" '"images": 3'
 
+claim "a golden of the same driver and processor must be equal, another one within the limits"
+printf 'plain %s --exposure 0.01\ntwo_%%02d assets/fur.tfx --algo none --followers 0 --look plain --size 48x36 --frames 2\n' "$small" >"$work/list"
+goldens 1; says "plain.png: different: RMSE 0."; says "golden: $work/goldens/plain.png (common), from the same driver and processor: expected equal pixels"; in_file "$work/result/report.json" '"exact": true'
+goldens 0 --common-limits 8,0; says "plain.png: within limits: RMSE 0."; says "3 images: 2 same, 1 within limits"; in_file "$work/result/report.xml" 'failures="0"'
+
 claim "an image that differs fails, with sheet and reports; all failures are named at the end"
 printf 'plain %s --color #ff0000\n' "$small" >"$work/list"
 goldens 1 --pixel-tolerance 8 --max-failing-pixels 1%; says "plain.png: different"; says "two_00.png: missing"

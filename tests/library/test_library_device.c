@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Devices of the library, simulations and images on them, and interaction with the host's OpenGL
 // context.
+#include "base/clock.h"
 #include "base/random.h"
 #include "support/library_fixture.h"
 
@@ -330,6 +331,195 @@ static void takes_live_parameters(void **state)
     assert_memory_equal(before, after, sizeof before);
     tractrix_simulation_destroy(still);
     tractrix_simulation_destroy(blown);
+}
+
+// Parameters of drawing: a kept renderer draws what a new simulation with the parameter draws.
+static void is_lit_and_coloured_anew(void **state)
+{
+    // What is changed, and a parameter that both simulations begin with.
+    static const char *const CHANGES[][4] = {
+        {"color", "#c02040", "exposure", "0"},
+        {"tip_length", "0.6", "exposure", "0"},
+        {"tip_color", "#20c040", "tip_length", "0.5"},
+        {"opacity", "0.5", "exposure", "0"},
+        {"diffuse", "0.8", "exposure", "0"},
+        {"shading", "marschner", "exposure", "0"},
+        {"roughness", "9", "shading", "marschner"},
+        {"melanin", "0.9", "shading", "marschner"},
+        {"shadow", "dom", "exposure", "0"},
+        {"exposure", "1", "samples", "2"},
+        {"samples", "2", "exposure", "0"},
+        {"tone_map", "filmic", "exposure", "0"},
+        {"background", "transparent", "exposure", "0"},
+        {"aov", "depth", "exposure", "0"},
+    };
+    static uint8_t kept[FIXTURE_PIXELS][4], made[FIXTURE_PIXELS][4], last[FIXTURE_PIXELS][4];
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image, .width = 48, .height = 32, .pixels = kept};
+    (void)state;
+    for (size_t i = 0; i < sizeof CHANGES / sizeof *CHANGES; ++i) {
+        const char *const *change = CHANGES[i];
+        const char *const before[] = {change[2], change[3], NULL};
+        const char *const after[] = {change[2], change[3], change[0], change[1], NULL};
+        TractrixSimulation *simulation = simulate(device, before), *other = simulate(device, after);
+        WELL(tractrix_simulation_advance(simulation, NULL, &error));
+        WELL(tractrix_simulation_advance(other, NULL, &error));
+        WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        memcpy(last, kept, sizeof last);
+        WELL(tractrix_simulation_set_section(simulation, -1, change[0], change[1], &error));
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        library_draw(other, NULL, made);
+        if (memcmp(kept, made, sizeof kept) != 0) fail_msg("%s", change[0]);
+        if (memcmp(kept, last, sizeof kept) == 0) fail_msg("%s: no effect", change[0]);
+        tractrix_renderer_destroy(renderer);
+        tractrix_simulation_destroy(simulation);
+        tractrix_simulation_destroy(other);
+    }
+    TractrixSimulation *simulation = simulate(device, NONE);
+    library_refused(tractrix_simulation_set_section(simulation, 1, "color", "black", &error),
+                    TRACTRIX_USAGE, "section: got 1 for color");
+    library_refused(tractrix_simulation_set_section(simulation, 0, "exposure", "1", &error),
+                    TRACTRIX_USAGE, "section: got 0 for exposure, expected -1");
+    tractrix_simulation_destroy(simulation);
+}
+
+// The exposure of a scene is measured once on a device: with the studio look that takes about as
+// long as the image, so creating a second renderer takes a small part of the time.
+static void keeps_the_exposure_of_a_scene(void **state)
+{
+    static uint8_t pixels[2][FIXTURE_PIXELS][4];
+    double ms[2];
+    TractrixScene *scene;
+    TractrixDevice *own;
+    (void)state;
+    WELL(tractrix_device_open(&own, NULL, &error)); // which has measured nothing yet
+    WELL(tractrix_scene_read(&scene, "assets/curls.tfx", &error));
+    WELL(tractrix_scene_set(scene, -1, "algo", "none", &error));
+    for (int i = 0; i < 2; ++i) {
+        TractrixSimulation *simulation;
+        TractrixRenderer *renderer;
+        TractrixImage image = {
+            .size = sizeof image, .width = 48, .height = 32, .pixels = pixels[i]};
+        WELL(tractrix_simulation_create(&simulation, own, scene, &error));
+        double begin = clock_processor_ms();
+        WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+        ms[i] = clock_processor_ms() - begin;
+        WELL(tractrix_render(renderer, NULL, &image, &error));
+        tractrix_renderer_destroy(renderer);
+        tractrix_simulation_destroy(simulation);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    if (!(ms[1] < 0.5 * ms[0])) fail_msg("%g and %g ms", ms[0], ms[1]);
+    tractrix_scene_destroy(scene);
+    tractrix_device_destroy(own);
+}
+
+// From a saved state hair moves as it did before, in the same simulation and in another one.
+static void returns_to_a_state(void **state)
+{
+    static const char *const blown[] = {"wind", "3,0,0", NULL};
+    static uint8_t pixels[3][FIXTURE_PIXELS][4];
+    float positions[3][FIXTURE_VERTICES][4];
+    TractrixState *saved, *copy;
+    size_t size;
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, blown), *other = simulate(device, blown);
+    for (int i = 0; i < 4; ++i) WELL(tractrix_simulation_advance(simulation, NULL, &error));
+    WELL(tractrix_simulation_save(&saved, simulation, &error));
+    const void *bytes = tractrix_state_bytes(saved, &size);
+    WELL(tractrix_state_create(&copy, bytes, size, &error));
+    double time = tractrix_simulation_time(simulation);
+    for (int turn = 0; turn < 3; ++turn) {
+        TractrixSimulation *moved = turn == 2 ? other : simulation;
+        if (turn) WELL(tractrix_simulation_restore(moved, turn == 2 ? copy : saved, &error));
+        assert_true(tractrix_simulation_time(moved) == time);
+        library_draw(moved, NULL, pixels[turn]);
+        for (int i = 0; i < 6; ++i) WELL(tractrix_simulation_advance(moved, NULL, &error));
+        memcpy(positions[turn], map(moved, TRACTRIX_GUIDES).position, sizeof positions[turn]);
+    }
+    for (int turn = 1; turn < 3; ++turn) {
+        assert_memory_equal(positions[0], positions[turn], sizeof positions[0]);
+        assert_memory_equal(pixels[0], pixels[turn], sizeof pixels[0]);
+    }
+    tractrix_state_destroy(copy);
+    WELL(tractrix_state_create(&copy, bytes, size / 2, &error));
+    library_refused(tractrix_simulation_restore(other, copy, &error), TRACTRIX_BAD_INPUT,
+                    "another simulation");
+    WELL(tractrix_simulation_restore(other, saved, &error));
+    TractrixPose pose = pose_after(1);
+    WELL(tractrix_simulation_advance(other, &pose, &error));
+    TractrixState *none;
+    library_refused(tractrix_simulation_save(&none, other, &error), TRACTRIX_USAGE,
+                    "the caller moves body 0");
+    assert_null(none);
+    tractrix_state_destroy(saved);
+    tractrix_state_destroy(copy);
+    tractrix_simulation_destroy(simulation);
+    tractrix_simulation_destroy(other);
+}
+
+static bool give_up(void *data, double share)
+{
+    double *shares = data;
+    shares[0] = shares[1], shares[1] = share;
+    return share < 0.01;
+}
+
+static void a_warm_up_can_be_cancelled(void **state)
+{
+    static const char *const long_parameters[] = {"preroll", "3600", NULL};
+    TractrixScene *scene = library_scene(long_parameters);
+    TractrixSimulation *simulation;
+    double shares[2] = {0};
+    (void)state;
+    tractrix_device_set_progress(device, give_up, shares);
+    library_refused(tractrix_simulation_create(&simulation, device, scene, &error),
+                    TRACTRIX_CANCELLED, "cancelled after");
+    assert_null(simulation);
+    assert_true(shares[0] < shares[1] && shares[1] >= 0.01 && shares[1] < 0.5);
+    tractrix_device_set_progress(device, NULL, NULL);
+    tractrix_scene_destroy(scene);
+}
+
+// Layers hold what images of --aov show, and the image is that of a call without layers.
+static void layers_come_with_the_image(void **state)
+{
+    static uint8_t image_pixels[FIXTURE_PIXELS][4], plain[FIXTURE_PIXELS][4];
+    static float coverage[FIXTURE_PIXELS], depth[FIXTURE_PIXELS], tangent[FIXTURE_PIXELS][3],
+        aov[FIXTURE_PIXELS][4];
+    static uint32_t strand[FIXTURE_PIXELS];
+    TractrixRenderer *renderer;
+    TractrixImage image = {.size = sizeof image, .width = 48, .height = 32, .pixels = image_pixels};
+    TractrixImage floats = {.size = sizeof floats,
+                            .width = 48,
+                            .height = 32,
+                            .format = TRACTRIX_RGBA32F,
+                            .pixels = aov};
+    const TractrixLayers layers = {sizeof layers, coverage, depth, tangent[0], strand};
+    int hair = 0;
+    (void)state;
+    TractrixSimulation *simulation = simulate(device, NONE);
+    library_draw(simulation, NULL, plain);
+    WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA8, &error));
+    WELL(tractrix_render(renderer, NULL, &image, &error));
+    WELL(tractrix_render_layers(renderer, NULL, &image, &layers, &error));
+    assert_memory_equal(image_pixels, plain, sizeof plain);
+    tractrix_renderer_destroy(renderer);
+    WELL(tractrix_simulation_set(simulation, "aov", "depth", &error));
+    WELL(tractrix_renderer_create(&renderer, simulation, 48, 32, TRACTRIX_RGBA32F, &error));
+    WELL(tractrix_render(renderer, NULL, &floats, &error));
+    for (int i = 0; i < FIXTURE_PIXELS; ++i) {
+        const float *t = tangent[i];
+        bool there = strand[i] != 0;
+        assert_true(there == (depth[i] > 0) && coverage[i] >= 0 && coverage[i] <= 1);
+        assert_true(!there || (depth[i] == aov[i][0] && coverage[i] > 0));
+        assert_true(fabsf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2] - (float)there) < 1e-5f);
+        hair += there;
+    }
+    assert_in_range(hair, 5, FIXTURE_PIXELS);
+    tractrix_renderer_destroy(renderer);
+    tractrix_simulation_destroy(simulation);
 }
 
 // --- Images.
@@ -768,24 +958,6 @@ static void leaves_a_hosts_context_alone(void **state)
     drop_host();
 }
 
-static void assert_defaults(void)
-{
-    static const GLenum OFF[] = {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_SCISSOR_TEST,
-                                 GL_STENCIL_TEST};
-    GLboolean mask = GL_FALSE, colors[4];
-    GLint program = 1, alignment = 0, function = 0, unit = 0;
-    for (size_t i = 0; i < sizeof OFF / sizeof *OFF; ++i) assert_false(glIsEnabled(OFF[i]));
-    glGetBooleanv(GL_DEPTH_WRITEMASK, &mask);
-    glGetBooleanv(GL_COLOR_WRITEMASK, colors);
-    glGetIntegerv(GL_CURRENT_PROGRAM, &program);
-    glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
-    glGetIntegerv(GL_DEPTH_FUNC, &function);
-    glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
-    assert_true(function == GL_LESS && unit == GL_TEXTURE0);
-    assert_true(mask && colors[0] && colors[3] && program == 0 && alignment == 4);
-    assert_int_equal(glGetError(), GL_NO_ERROR);
-}
-
 // Positions and pixels in a borrowed context equal those in an own context, whatever the host does
 // in between.
 static void works_in_a_borrowed_context(void **state)
@@ -802,7 +974,6 @@ static void works_in_a_borrowed_context(void **state)
     work_on(device, &own);
     assert_memory_equal(job.position, own.position, sizeof own.position);
     assert_memory_equal(job.pixels, own.pixels, sizeof own.pixels);
-    assert_defaults();
     TractrixSimulation *simulation = simulate(borrowed, NONE);
     glGenBuffers(2, buffers);
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
@@ -824,13 +995,6 @@ static void works_in_a_borrowed_context(void **state)
                     TRACTRIX_USAGE, "9999");
     glEnable(0x1234); // an error by the host must not be reported as the library's
     WELL(tractrix_simulation_advance(simulation, NULL, &error));
-    assert_defaults();
-#ifndef NDEBUG // only debug builds check the host's state
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    library_refused(tractrix_simulation_advance(simulation, NULL, &error), TRACTRIX_USAGE,
-                    "GL_PACK_ALIGNMENT is 0x1: expected 0x4");
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-#endif
     eglMakeCurrent(host_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     library_refused(tractrix_simulation_advance(simulation, NULL, &error), TRACTRIX_NO_GL,
                     "no OpenGL context");
@@ -854,6 +1018,11 @@ int main(void)
         cmocka_unit_test(moves_a_mesh_only_by_whole_steps),
         cmocka_unit_test(follows_a_mesh),
         cmocka_unit_test(takes_live_parameters),
+        cmocka_unit_test(is_lit_and_coloured_anew),
+        cmocka_unit_test(keeps_the_exposure_of_a_scene),
+        cmocka_unit_test(returns_to_a_state),
+        cmocka_unit_test(a_warm_up_can_be_cancelled),
+        cmocka_unit_test(layers_come_with_the_image),
         cmocka_unit_test(draws_by_views_and_formats),
         cmocka_unit_test(keeps_pixels_when_threads_change),
         cmocka_unit_test(refuses_what_has_no_effect),

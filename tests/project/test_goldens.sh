@@ -32,7 +32,7 @@ fi
 lines=$(scripts/compare-goldens tests/goldens.txt $golden "$bin/goldens" $limits $platform 2>&1)
 status=$?
 echo "$lines"
-passed=$(echo "$lines" | grep -c ': same: ')
+passed=$(echo "$lines" | grep -cE ': (same|within limits): ')
 failed=$(echo "$lines" | grep -cE ': (different|size mismatch|missing|unrendered|unreadable|failed): ')
 [ $status = 0 ] || [ "$failed" -gt 0 ] || failed=1
 

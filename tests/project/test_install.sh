@@ -24,7 +24,7 @@ for name in render gen convert compare bench farm turntable compare-goldens; do
     is_file "$share/fish/vendor_completions.d/$name.fish"; is_file "$share/zsh/site-functions/_$name"
 done
 if [ "$(find "$root/usr/bin" -type f | wc -l)" = 8 ]; then good; else bad "not 8 programs: $(ls "$root/usr/bin")"; fi
-for file in include/tractrix.h lib/libtractrix.so.0 lib/libtractrix.a lib/pkgconfig/tractrix.pc; do is_file "$root/usr/$file"; done
+for file in include/tractrix.h lib/libtractrix.so.0 lib/libtractrix.a lib/pkgconfig/tractrix.pc lib/cmake/tractrix/tractrix-config.cmake; do is_file "$root/usr/$file"; done
 holds test "$(readlink "$root/usr/lib/libtractrix.so")" = libtractrix.so.0
 for file in man/man1/tractrix-gen-fur.1 doc/tractrix/LICENSE doc/tractrix/docs/look.md doc/tractrix/docs/notes/solvers.md tractrix/demo.json tractrix/scene.schema.json; do
     is_file "$share/$file"
@@ -72,6 +72,15 @@ else
     (cd "$work" && LD_LIBRARY_PATH="$root/usr/lib" ./first "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
     run 0 "$share/tractrix/fur.tfx" --size 160x120 -q -o "$work/rendered.png"
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
+    if command -v cmake >/dev/null; then
+        mkdir "$work/cmake"; cp "$work/first.c" "$work/cmake/"
+        awk '/^```cmake/ { inside = 1; next } /^```/ { inside = 0 } inside' docs/library.md >"$work/cmake/CMakeLists.txt"
+        holds cmake -S "$work/cmake" -B "$work/cmake/build" -DCMAKE_PREFIX_PATH="$root/usr"
+        holds cmake --build "$work/cmake/build"
+        holds "$work/cmake/build/first" "$share/tractrix/fur.tfx"; rm -f first.png
+    else
+        skip "no cmake"
+    fi
     # shellcheck disable=SC2046
     holds cc -o "$work/static" "$work/first.c" -I"$root/usr/include" "$root/usr/lib/libtractrix.a" \
         $(PKG_CONFIG_SYSROOT_DIR='' pkg-config --libs $(pkg-config --print-requires-private tractrix)) \
@@ -80,6 +89,25 @@ else
     (cd "$work" && ./static "$share/tractrix/fur.tfx") >"$work/out" 2>"$work/err"
     holds "$bin_here/tractrix-compare" "$work/first.png" "$work/rendered.png"
 fi
+
+claim "programs that draw nothing need no library of OpenGL"
+for name in gen convert compare; do
+    if ! readelf -d "$root/usr/bin/tractrix-$name" >"$work/out" 2>"$work/err"; then skip "no readelf"
+    elif grep -qiE 'NEEDED.*(epoxy|EGL|GL)' "$work/out"; then bad "$name: $(grep -iE 'epoxy|GL' "$work/out")"
+    else good; fi
+done
+
+claim "ldconfig runs where the folder is one of the system's, and nowhere else"
+mkdir "$work/fake"
+# shellcheck disable=SC2016 # of the script that it writes
+printf '#!/bin/sh\necho "%s/home/lib: (from a file)"\n[ "$1" = -N ] || echo ran >"%s/ran"\n' "$work" "$work" >"$work/fake/ldconfig"
+chmod 755 "$work/fake/ldconfig"
+for home in other home; do
+    none "$work/ran"
+    # shellcheck disable=SC2086
+    holds env -u PKG_CONFIG_PATH -u PKG_CONFIG_SYSROOT_DIR PATH="$work/fake:$PATH" make --no-print-directory install "CC=$compiler" $same PREFIX="$work/$home" LIBDIR="$work/$home/lib"
+done
+is_file "$work/ran"
 
 claim "manual pages are sound"
 for page in "$share"/man/man1/*; do
@@ -98,7 +126,7 @@ claim "make uninstall leaves no file behind"
 installs uninstall
 holds test -z "$(find "$root" ! -type d)"
 # Folders of the project and of completions are removed, too; folders of the system stay.
-holds test "$(cd "$root" && find . -type d | sort | tr '\n' ' ')" = ". ./usr ./usr/bin ./usr/include ./usr/lib ./usr/lib/pkgconfig ./usr/share ./usr/share/doc ./usr/share/man ./usr/share/man/man1 "
+holds test "$(cd "$root" && find . -type d | sort | tr '\n' ' ')" = ". ./usr ./usr/bin ./usr/include ./usr/lib ./usr/lib/cmake ./usr/lib/pkgconfig ./usr/share ./usr/share/doc ./usr/share/man ./usr/share/man/man1 "
 
 claim "the version sorts as Debian's do"
 program=$bin/tractrix-render

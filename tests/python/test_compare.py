@@ -93,8 +93,52 @@ def test_files_keep_what_arrays_hold(tmp_path, dtype, suffix, opaque):
     tractrix.write_image(tmp_path / f"x.{suffix}", image)
     read = tractrix.read_image(tmp_path / f"x.{suffix}")
     assert read.dtype == dtype and read.shape == image.shape
-    np.testing.assert_allclose(read, image, rtol=2**-10 if suffix == "exr" else 0)  # EXR may hold halves
+    np.testing.assert_array_equal(read, image)
     assert tractrix.compare(tmp_path / f"x.{suffix}", read).same
+
+
+def test_exr_files_hold_halves_on_request(tmp_path):
+    image = np.random.default_rng(3).random((5, 7, 4)).astype(np.float32)
+    tractrix.write_image(tmp_path / "x.exr", image, half=True)
+    read = tractrix.read_image(tmp_path / "x.exr")
+    np.testing.assert_allclose(read, image, rtol=2**-11)
+    tractrix.write_image(tmp_path / "y.exr", image.astype(np.float16))
+    np.testing.assert_array_equal(tractrix.read_image(tmp_path / "y.exr"), read)
+    for path, value in (("x.pfm", image), ("x.exr", image * 1e5)):
+        with pytest.raises(tractrix.TractrixValueError, match="half"):
+            tractrix.write_image(tmp_path / path, value, half=True)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_images_must_be_finite(tmp_path, value):
+    image = np.zeros((4, 6), np.float32)
+    image[2, 5] = value
+    for call in (lambda: tractrix.compare(image, image), lambda: tractrix.compare(np.ones((4, 6)), image),
+                 lambda: tractrix.write_image(tmp_path / "x.exr", image)):
+        with pytest.raises(tractrix.TractrixValueError, match="expected finite numbers") as caught:
+            call()
+        assert caught.value.code == 3
+    assert not (tmp_path / "x.exr").exists()
+
+
+def test_local_and_largest_differences_have_limits(image):
+    image[:, :, 3] = 255
+    other = image.copy()
+    image[8:12, 8:12, 0], other[8:12, 8:12, 0] = 100, 116
+    result = tractrix.compare(other, image)
+    assert result.local_difference == 1 and result.local_at == (0, 0) and not result.equal and not result.within
+    for name, value in (("max_difference", 16), ("max_local_difference", 1)):
+        assert tractrix.compare(other, image, **{name: value}).within
+        assert not tractrix.compare(other, image, **{name: 0.9 * value}).within and not tractrix.compare(other, image, **{name: 0}).within
+
+
+def test_masks_of_bools_and_no_masked_arrays(image):
+    other, mask = image.copy(), np.ones((24, 32), bool)
+    other[3, 4] ^= 255
+    mask[3, 4] = False
+    assert tractrix.compare(other, image, mask=mask).equal
+    with pytest.raises(tractrix.TractrixValueError, match="masked array"):
+        tractrix.compare(np.ma.masked_array(image, image > 7), image)
 
 
 def test_files_that_are_none_say_so(tmp_path):

@@ -9,7 +9,7 @@ from tractrix import _declarations, _error, _library
 
 SCALARS = {"size_t": ctypes.c_size_t, "uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64, "int": ctypes.c_int,
            "bool": ctypes.c_bool, "float": ctypes.c_float, "double": ctypes.c_double, "char": ctypes.c_char}
-HANDLES = {"TractrixDevice", "TractrixScene", "TractrixSimulation", "TractrixRenderer", "TractrixPicture"}
+HANDLES = {"TractrixDevice", "TractrixScene", "TractrixSimulation", "TractrixRenderer", "TractrixPicture", "TractrixState"}
 
 
 def without_comments(text):
@@ -22,6 +22,8 @@ def type_of(words, stars):
         return ctypes.c_char_p
     if words == "void":
         return ctypes.c_void_p if stars else None
+    if words == "TractrixProgress":  # a pointer to it is ctypes' function type
+        return _declarations.Progress
     if words in HANDLES:
         kind, stars = ctypes.c_void_p, stars - 1
     elif words in SCALARS:

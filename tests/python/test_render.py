@@ -119,3 +119,13 @@ def test_after_fork_the_child_is_told(curls):
         os._exit(0)
     os.waitpid(child, 0)
     assert os.read(reader, 500).startswith(b"4 ")
+
+
+def test_layers_come_with_the_image():
+    with tractrix.Simulation("assets/fur.tfx", look="plain", algo="none", exposure=0) as hair:
+        layers = hair.render_layers((48, 32))
+        assert (layers.image == hair.render((48, 32))).all()
+        assert layers.depth.shape == (32, 48) and layers.tangent.shape == (32, 48, 3) and layers.strand.dtype == np.uint32
+        assert ((layers.strand > 0) == (layers.depth > 0)).all() and (layers.strand > 0).any()
+        hair.set(color="#c02040", section=0)
+        assert (hair.render((48, 32)) != layers.image).any()

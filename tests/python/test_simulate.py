@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 # simulate() and Simulation: positions of strands in the form of the input, moved by frames, poses and meshes.
 import gc
+import json
+import os
+import signal
 import threading
 import weakref
 
@@ -216,3 +219,101 @@ def test_simulations_of_several_threads_take_turns(curls):
         thread.join()
     np.testing.assert_array_equal(results[0], results[1])
     np.testing.assert_array_equal(results[0], results[2])
+
+
+def test_notebooks_see_the_hair_and_its_time():
+    hair = tractrix.Simulation("assets/fur.tfx", look="plain", algo="none", fps=10)
+    hair.advance()
+    assert repr(hair) == "<tractrix.Simulation at 0.1 s>" and hair._repr_png_().startswith(b"\x89PNG")
+    hair.close()
+    assert repr(hair) == "<tractrix.Simulation, closed>" and hair._repr_png_() is None
+    assert tractrix.__version__ == tractrix.version()
+
+
+@pytest.mark.parametrize("call", [lambda: tractrix.Simulation("none.tfx"), lambda: tractrix.read_image("none.png"),
+                                  lambda: tractrix.Simulation("assets/fur.tfx", mesh="none.obj")])
+def test_a_missing_file_is_what_python_calls_it(call):
+    with pytest.raises(FileNotFoundError, match="none") as caught:
+        call()
+    assert isinstance(caught.value, tractrix.TractrixValueError) and caught.value.code == 3
+
+
+@pytest.mark.parametrize("name, value", [("color", 128.0), ("color", -0.1), ("thickness", -1.0)])
+def test_values_of_vertices_have_their_range(name, value):
+    strands = np.zeros((2, 3, 3), np.float32)
+    strands[:, :, 1] = np.arange(3) * -0.1
+    array = np.full((2, 3, 3) if name == "color" else (2, 3), 0.5, np.float32)
+    array[1, 2] = value
+    with pytest.raises(tractrix.TractrixValueError, match=f"{name}: strand 1: got {value:g}: expected") as caught:
+        tractrix.Simulation(strands, unit="m", **{name: array})
+    assert caught.value.code == 3
+
+
+LONG = {"look": "plain", "preroll": 3600}  # seconds, which take minutes to simulate
+
+
+def test_a_warm_up_tells_its_progress_and_ends_when_that_raises():
+    shares = []
+
+    def stop(share):
+        shares.append(share)
+        if len(shares) == 3:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        tractrix.Simulation("assets/fur.tfx", progress=stop, **LONG)
+    assert len(shares) == 3 and 0 < shares[0] < shares[1] < shares[2] < 0.5
+    done = []
+    tractrix.Simulation("assets/fur.tfx", progress=done.append, look="plain", preroll=0.5).close()
+    assert done == sorted(done)
+
+
+def test_ctrl_c_ends_a_warm_up():
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        tractrix.Simulation("assets/fur.tfx", **LONG)
+    timer.join()
+    assert signal.set_wakeup_fd(-1) == -1
+    tractrix.Simulation("assets/fur.tfx", look="plain", algo="none").close()
+
+
+def test_a_scene_is_a_dict(tmp_path):
+    scene = {"look": "plain", "sections": [{"file": "assets/fur.tfx", "color": "#c02040"}, {"file": "assets/curls.tfx", "radius": np.float64(1e-3)}]}
+    (tmp_path / "scene.json").write_text(json.dumps({**scene, "sections": [{**section, "file": os.path.abspath(section["file"])} for section in scene["sections"]]}, default=float))
+    images = [tractrix.render(source, size=(48, 32), exposure=0, algo="none") for source in (scene, tmp_path / "scene.json")]
+    assert (images[0] == images[1]).all()
+    with pytest.raises(tractrix.TractrixValueError, match="sections"):
+        tractrix.Simulation({"sections": 3})
+    with pytest.raises(tractrix.TractrixValueError, match="strands: .*expected a dict with what"):
+        tractrix.Simulation({"sections": [object()]})
+
+
+def test_rotations_and_meshes_of_other_modules_are_taken():
+    class Rotation:
+        def as_quat(self):
+            return np.array([0, 0, 1, 0])
+
+    class Trimesh:
+        vertices, faces = np.eye(3), np.array([[0, 1, 2]])
+
+    heads = [(Rotation(), (0.1, 0, 0)), ((0, 0, 1, 0), (0.1, 0, 0))]
+    moved = [list(tractrix.simulate("assets/fur.tfx", head=[head], look="plain"))[0] for head in heads]
+    assert (moved[0] == moved[1]).all()
+    meshes = (Trimesh(), (Trimesh.vertices, Trimesh.faces))
+    images = [tractrix.render("assets/fur.tfx", mesh=mesh, mesh_unit="m", look="plain", algo="none", exposure=0, size=(48, 32)) for mesh in meshes]
+    assert (images[0] == images[1]).all()
+
+
+def test_a_simulation_returns_to_a_state():
+    with tractrix.Simulation("assets/fur.tfx", look="plain", wind=(3, 0, 0)) as hair:
+        hair.advance()
+        state = hair.save()
+        ends = []
+        for _ in range(2):
+            hair.advance()
+            ends.append(hair.positions())
+            hair.restore(state)
+        assert (ends[0] == ends[1]).all()
+        with pytest.raises(tractrix.TractrixValueError, match="another simulation"):
+            hair.restore(state[:100])
