@@ -326,7 +326,7 @@ check-farm: # GNU parallel and a Slurm of one node, which make test does without
 	@tests/runner $(OUT) test_farm
 # All tests except scripts that run the programs many times, as other tests do, and tests that draw hundreds of images.
 # SANITIZE_BUT=none runs all.
-SANITIZE_BUT = ^test_(bench_command|bench_html|benchmark_stamp|blender|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|furnace|gen_command|goldens|gpu_report|groom_command|html_report|install|light_command|light_turned|mutate|python|readme|recorded_(images|motion|reports)|stress|swatches|turntable_images|turntable_script|tutorial|(along|clamped|shadow|solvers|volume)[.])
+SANITIZE_BUT = ^test_(bench_command|bench_html|benchmark_stamp|blender|budget|ci_examples|command_cache|command_line|compare_goldens|docs|farm|faults|furnace|gen_command|goldens|gpu_report|groom_command|html_report|install|light_command|light_turned|mutate|python|readme|recorded_(images|motion|reports)|stress|swatches|turntable_images|turntable_script|tutorial|(along|clamped|shadow|solvers|volume)[.])
 # Tests in C behave as on a GPU here, with maths that are one unit off, or two; `make test` runs them as this machine does.
 check-sanitize:
 	$(QUIET) CONFIG=sanitize OUT=$(SIDE)sanitize all tests

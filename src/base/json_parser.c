@@ -203,6 +203,19 @@ static const char *skip_digits(const char *at)
     return at;
 }
 
+// The number between two places. (strtoll would do, but with strict checks of strings the
+// sanitizers look for the file's end in each call.) False if it is too large.
+static bool parse_integer(const char *at, const char *end, json_int_t *value)
+{
+    bool negative = *at == '-';
+    *value = 0;
+    for (at += negative; at < end; ++at)
+        if (__builtin_mul_overflow(*value, 10, value) ||
+            __builtin_add_overflow(*value, negative ? '0' - *at : *at - '0', value))
+            return false;
+    return true;
+}
+
 static json_t *read_number(Parser *parser)
 {
     const char *at = parser->at + (*parser->at == '-'), *digits = at;
@@ -223,9 +236,10 @@ static json_t *read_number(Parser *parser)
     }
     if (!good || at > parser->end) return fail_expected(parser, "a value");
     errno = 0;
-    long long integer = whole ? strtoll(parser->at, NULL, 10) : 0;
+    json_int_t integer = 0;
     double real = whole ? 0 : strtod(parser->at, NULL);
-    if (errno && (whole || real > 1 || real < -1)) return fail(parser, "the number is too large");
+    if (whole ? !parse_integer(parser->at, at, &integer) : errno && (real > 1 || real < -1))
+        return fail(parser, "the number is too large");
     if (!take_memory(parser, ATOM_BYTES)) return NULL;
     parser->at = at;
     return made(parser, whole ? json_integer(integer) : json_real(real));

@@ -119,8 +119,9 @@ static void put_samples(FILE *file)
     fputs("int[] curveVertexCounts=[2]\nuniform token type=\"linear\"\n}\n", file);
 }
 
-// The time is that of the reader; sanitizers make it up to eight times as long.
-static void small_files_take_little_time(void **state)
+// Work is counted, so that a file of a megabyte that stands for hours of it is refused at the same
+// place everywhere.
+static void small_files_stand_for_little_work(void **state)
 {
     static const struct {
         void (*put)(FILE *file);
@@ -141,12 +142,9 @@ static void small_files_take_little_time(void **state)
         fputs("#usda 1.0\n", file);
         cases[i].put(file);
         fclose(file);
-        clock_t begin_time = clock();
         Result result = strands_read_frames(&strands, &frames, path, NULL, NULL, &error);
-        double seconds = (double)(clock() - begin_time) / CLOCKS_PER_SEC;
         if (cases[i].refused ? !strstr(error.text, cases[i].refused) : result != RESULT_OK)
             fail_msg("case %zu: '%s'", i, error.text);
-        if (seconds > 8) fail_msg("case %zu took %.1f s", i, seconds);
         strands_destroy(&strands);
         strands_frames_destroy(&frames);
     }
@@ -157,7 +155,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(counts_are_multiplied_without_overflow),
         cmocka_unit_test(memory_and_work_are_counted_together),
-        cmocka_unit_test_setup_teardown(small_files_take_little_time, temporary_create,
+        cmocka_unit_test_setup_teardown(small_files_stand_for_little_work, temporary_create,
                                         temporary_destroy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

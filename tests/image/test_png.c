@@ -428,7 +428,7 @@ static void every_kind_of_pixel_is_read(void **state)
             Image image;
             Error error = {{0}};
             add_header(&file, 2, 1, kinds[i].depth, kinds[i].type, laced);
-            add_chunk(&file, "gAMA", "\0\1\x86\xa0", 4); // gamma 1: ignored
+            add_chunk(&file, "gAMA", "\0\0\xb1\x8f", 4); // sRGB's 1/2.2: no other space
             if (kinds[i].type == 3) add_chunk(&file, "PLTE", palette, sizeof palette);
             if (kinds[i].colours)
                 add_chunk(&file, "tRNS", kinds[i].colours, (size_t)kinds[i].colour_bytes);
