@@ -33,6 +33,7 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 #define BIND_CONTACTS       4 // collisions: vec4 per particle
 #define BIND_CONTACT_COUNTS 5 // uvec4 per strand
 #define BIND_CLEARANCE_OUT  6 // float per particle
+#define BIND_CONTACT_FORCES 7 // vec4 per particle
 
 // Buffer textures.
 #define BIND_POSITION        0 // vec4 per particle
@@ -49,7 +50,8 @@ typedef uint uvec4[4] __attribute__((aligned(16)));
 // Four vec4 per strand that is bound to a deforming mesh: the rotation (quaternion) and translation
 // (xyz, m), within the head's frame, from the strand at rest to its place on the mesh, first before
 // the step, then after it. inbetween.comp has two more for the frame that is drawn.
-#define BIND_FRAMES         9
-#define BIND_NATURAL        10 // rod: the natural shape, vec4 per particle, see rod_joint.glsl
-#define BIND_SCRATCH_BEFORE 12
-#define BIND_HELD           11 // rod: force that the groom holds, vec4 per particle
+#define BIND_FRAMES                9
+#define BIND_NATURAL               10 // rod: the natural shape, vec4 per particle, see rod_joint.glsl
+#define BIND_SCRATCH_BEFORE        12
+#define BIND_CONTACT_FORCES_BEFORE 13
+#define BIND_HELD                  11 // rod: force that the groom holds, vec4 per particle

@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Pushes hair out of the colliders after the solver's step, each strand from root to tip.
+// Contact of hair with the colliders, after the solver's step, each strand as a whole.
 //
-// Let x be the position that the solver gave to particle j, and p the position of the particle
-// before it, which this pass may have moved. Particle j keeps its distance l: it goes from p
-// towards x by l. So no particle moves farther than the particle before it. `need` is the distance
-// from the collider that a particle should have. If the particle is too deep, the link turns about
-// p. With the surface's normal n, the new direction d' has n.d' = n.d + depth/l and the rest along
-// the tangent of d. This puts a particle exactly on a plane, and on a curved surface after a few
-// rounds (Newton's method). So lengths stay the same, and hair at rest comes back to the same
-// place in every step.
+// Let x* be the positions that the solver gave to the particles. Contacts and tensions move them to
+// the x that are nearest to x*, with the masses as measure, among all that keep the links' lengths
+// and the distance `need` from the colliders: Gauss's principle of least constraint (Moreau:
+// Quadratic programming in mechanics, SIAM J. Control 1966). A solver that keeps lengths has made
+// x* in the same way, and a projection onto a part of a set may follow one onto the set; so x is
+// what one solve with all constraints would give. A lifted particle is pulled back by both its
+// neighbours, and nothing gains energy.
 //
-// Friction is Coulomb's.
-// - Positions: of the way that the particle has come along the surface since the step before, a
-//   part is undone: friction times the depth that is pushed out, at most all of the way. Otherwise
-//   hair at rest would creep by g dt^2 a step.
-// - Velocities, relative to the surface: the part into the surface is removed, and along the
-//   surface at most friction times as much. Nothing gains speed except by the push itself.
-// - Particles that move only because the particle before them was pushed keep their velocity.
-//   (Giving them the displacement over dt, all of it or only what slows them down, made styled
-//   strands that lie on a sphere flutter for ever.)
+// If strands bend (BENDS 1, rod), the turns of the links against each other are part of the
+// measure: the solver's x* is the minimum of an energy whose second derivative has them, too.
+//
+// Rounds of Newton's method find x (rod_front.glsl: unknowns are the turns of the links). A contact
+// adds its force to a particle's residual and its stiffness to the matrix (contact.glsl). Then
+// velocities are changed in the same way, which is linear: none may point into a surface. What is
+// too deep after the last round is pushed out link by link, from root to tip.
 //
 // A root may lie inside a collider. It stays there, and the needed distance of the other particles
 // grows with the arc length from the root. In a groom at rest (CLEARANCE 1), a particle may be
@@ -26,13 +23,18 @@
 // has in the groom (negative inside), whichever is less. So contacts at rest do not push.
 //
 // MODE 0: positions and velocities
-// MODE 1: unit directions and the tip (split)
-// MODE 2: drawn positions, without velocities and friction
+// MODE 1: unit directions and the tip (split): pushed out from root to tip, since particles have no
+//   velocities
+// MODE 2: drawn positions: the same, without friction
 // MODE 3: pushes nothing; computes the clearances, once, from positions in the head's frame
 // CLEARANCE 1: particles have clearances; MODE 0 and 2
 // CONES: number of cones (spheres and capsules) in registers, or 0: any number, fetched
 // FIELD 1: one more collider, a mesh (distance_field.glsl)
+// BENDS 1: strands resist bending
+// MIDPOINT 1: the solver's rule is v+ = 2 u/dt - v with the displacement u; what contact adds to u
+//   then adds to v+ before velocities are changed
 // BOUND 1: strands grow on a mesh that deforms
+// STRANDS: strands of a lane, which use the same scratch memory
 // ORDERED: see particles.glsl; here, too, a lane fetches the values of its strand before it stores
 // there
 #include "sim/collide_params.h"
@@ -47,9 +49,16 @@
 #define SEGMENTS  1
 #define DRAWN     2
 #define FINDING   3
+#define SOLVES    (MODE == PARTICLES)
 
 layout(local_size_x = GROUP_SIZE) in;
 #include "common/lane.glsl"
+#if SOLVES
+#include "sim/scratch.glsl"
+#include "sim/rod_front.glsl"
+#include "sim/contact.glsl"
+#include "sim/relative.glsl"
+#endif
 #if MODE == SEGMENTS
 // Unit direction, length.
 layout(std430, binding = BIND_STATE_OUT) buffer Segments { vec4 segments[]; };
@@ -75,6 +84,11 @@ layout(binding = BIND_FRAMES) uniform samplerBuffer frames; // see shared.h
 layout(binding = BIND_REST) uniform samplerBuffer rest;
 // Per particle: its position at the end of step w. In the root's place: split's tip.
 layout(std430, binding = BIND_CONTACTS) buffer Contacts { vec4 contacts[]; };
+#if SOLVES
+// Per particle, for the contact of that step: its force (xyz), in lengths by which it moves the
+// particle alone, and whether it sticks (w).
+layout(std430, binding = BIND_CONTACT_FORCES) buffer Forces { vec4 forces[]; };
+#endif
 // Per strand, for its last step with contacts: number of contacts and the step. For all steps, as
 // bits of floats: largest depth before and after the push.
 layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
@@ -85,14 +99,17 @@ layout(std430, binding = BIND_CONTACT_COUNTS) buffer Counts { uvec4 counts[]; };
 #define velocity_before(address) velocities[address]
 #define segment_before(address)  segments[address]
 #define contact_before(address)  contacts[address]
+#define force_before(address)    forces[address]
 #else
 layout(binding = BIND_POSITION) uniform samplerBuffer position_texels;
 layout(binding = BIND_STATE) uniform samplerBuffer state_texels;
 layout(binding = BIND_CONTACTS_BEFORE) uniform samplerBuffer contact_texels;
+layout(binding = BIND_CONTACT_FORCES_BEFORE) uniform samplerBuffer force_texels;
 #define position_before(address) texelFetch(position_texels, address)
 #define velocity_before(address) texelFetch(state_texels, address)
 #define segment_before(address)  texelFetch(state_texels, address)
 #define contact_before(address)  texelFetch(contact_texels, address)
+#define force_before(address)    texelFetch(force_texels, address)
 #endif
 
 const int ROUNDS = 3;
@@ -110,12 +127,8 @@ float margin = 0.0, friction = 0.0;
 // rounding and solver errors would count as contacts.
 const float SLACK = 1e-4;
 
-void main()
+void step_strand(int s)
 {
-    int s = lane_index();
-    n = int(collide_params.vertex_count);
-    if (s >= int(collide_params.strand_count)) return;
-    open_cones();
     for (int j = 0; j < n; ++j) {
         int a = particle_address(s, j, n);
         vec3 p = rotate(collide_params.head_rotation, position_before(a).xyz) +
@@ -170,6 +183,7 @@ vec3 turned(vec3 d, vec3 normal, float depth, float l)
            sqrt(1.0 - up * up) * normalise_or(d - along * normal, perpendicular(normal));
 }
 
+#if MODE == SEGMENTS
 // The motion along the surface that friction leaves, if the motion is pressed onto the surface by
 // `pressed`.
 vec3 held_back(vec3 motion, vec3 normal, float pressed)
@@ -186,6 +200,7 @@ vec3 velocity_after(vec3 v, vec3 surface, vec3 normal)
     float stopped = max(-dot(relative, normal), 0.0);
     return v + stopped * normal - held_back(relative, normal, stopped);
 }
+#endif
 
 struct Strand {
     int number, first; // address of the root
@@ -240,114 +255,346 @@ struct Tally {
     float contacts, found, left;
 };
 
-// Pushes out a particle at `at`, which hangs on p by a link of length l, until it has at least the
-// distance `need`. `address` is that of its stored contact.
-void push_out(inout vec3 at, inout vec3 v, vec3 p, float l, float need, int address,
-              inout Tally tally)
+#if MODE != DRAWN
+// The displacement of the surface in this step, at a point of it.
+vec3 surface_displacement(vec3 at, float moved)
 {
-    Nearest nearest = nearest_surface(at);
-    float depth = need - nearest.distance;
-    bool contact = depth > 0.0;
-    tally.contacts += contact ? 1.0 : 0.0;
-    tally.found = max(tally.found, depth);
-    vec3 aim = at;
-#if MODE != DRAWN
-    vec4 before = contact_before(address);
+    vec3 surface = min(moved, 1.0) * head_displacement(at);
 #if BOUND && FIELD
-    vec3 surface = min(nearest.moved, 1.0) * head_displacement(at);
     vec4 before_turn = product(collide_params.head_turn_back, collide_params.head_rotation);
-    surface += nearest.moved > 1.5 ? collide_params.part * rotate(before_turn, field_moved(at))
-                                   : vec3(0.0);
-#else
-    vec3 surface = nearest.moved * head_displacement(at);
+    if (moved > 1.5) surface += collide_params.part * rotate(before_turn, field_moved(at));
 #endif
-    vec3 slip = at - before.xyz - surface;
-    aim -= before.w == collide_params.stamp_before
-               ? held_back(slip, nearest.normal, max(depth, 0.0))
-               : vec3(0.0);
+    return surface;
+}
 #endif
-    vec3 d = normalise_or(aim - p, nearest.normal);
-    depth -= contact ? dot(p + l * d - at, nearest.normal) : 0.0;
-    for (int round = 0; round < ROUNDS && contact && abs(depth) > EXACT * l; ++round) {
-        d = turned(d, nearest.normal, depth, l);
-        at = p + l * d;
-        nearest = nearest_surface(at);
-        depth = need - nearest.distance;
+
+#if SOLVES
+const float FAR_TURN = 0.3; // rad; a round turns no link by more
+const float SETTLED = 5e-8; // a strand that moved less in a round is done, see forward()
+const int VELOCITY_ROUNDS = 8;
+
+int last() { return n - 1; }
+int first_free() { return max(int(collide_params.carried), 1); }
+
+// Fills the scratch memory from what the solver made of the strand.
+void open_strand(Strand strand, float inside)
+{
+    vec3 x = vec3(0.0);
+    float arc = 0.0;
+    keep_here(0, x, FREE);
+    for (int j = 1; j < n; ++j) {
+        int a = strand.first + j * STRAND_TILE;
+        vec3 x_before = x;
+        x = particle_before(a, x + strand.root) - strand.root;
+        arc += length(x - x_before);
+        vec4 force = force_before(a);
+        if (contact_before(a).w != collide_params.stamp_before) force = vec4(0.0);
+        keep_here(j, x, force.w);
+        keep_force(j, force.xyz, j < int(collide_params.carried) ? -1e30 : needed(a, inside, arc));
+        keep_free(j, x);
+        keep_surface(j, vec4(0.0, 0.0, 0.0, -1.0));
     }
-    tally.left = max(tally.left, contact ? depth : 0.0);
-#if MODE != DRAWN
-    // A particle that was moved along with a pushed one may be just at the surface. Rounding must
-    // not decide whether it flies into the surface.
-    float rounding = EXACT * (l + max(abs(at.x), max(abs(at.y), abs(at.z))));
-    v = contact || depth > -rounding
-            ? velocity_after(v, surface / collide_params.dt, nearest.normal)
-            : v;
-#endif
 }
 
-void walk(Strand strand, float inside, bool touched)
+// What particle j meets at x, relative to the root.
+Meeting meet(Strand strand, int j, vec3 x, float need)
 {
-    vec3 p = strand.root, p_before = p;
-    float arc = 0.0;
-    Tally tally = Tally(0.0, 0.0, 0.0);
-    int last = touched ? n : 0;
-    for (int j = 1; j < last; ++j) {
-        int a = strand.first + j * STRAND_TILE;
-        vec3 x = particle_before(a, p_before), link = x - p_before, at = x, v = vec3(0.0);
-        float l = length(link);
-#if MODE == PARTICLES
-        vec4 velocity = velocity_before(a);
-        v = velocity.xyz;
+    vec3 at = strand.root + x;
+    Nearest nearest = nearest_surface(at);
+    Meeting here = Meeting(nearest.normal, nearest.distance - need, vec3(0.0), false);
+    vec4 before = contact_before(strand.first + j * STRAND_TILE);
+    if (before.w == collide_params.stamp_before) {
+        vec3 slip = at - before.xyz - surface_displacement(at, nearest.moved);
+        here.slip = slip - dot(slip, nearest.normal) * nearest.normal;
+        here.slip_known = true;
+    }
+    return here;
+}
+
+// The same for velocities; `change`: of this one.
+Meeting meet_velocity(Strand strand, int j, vec3 x, vec3 change, vec4 surface)
+{
+    vec3 v = velocity_before(strand.first + j * STRAND_TILE).xyz + change -
+             surface_displacement(strand.root + x, surface.w) / collide_params.dt;
+    float into = dot(v, surface.xyz);
+    return Meeting(surface.xyz, surface.w < 0.0 ? 1e30 : into, v - into * surface.xyz, true);
+}
+
+#if BENDS
+// By how much contact has turned link j so far, rad, or rad/s.
+vec3 turned_by(int j, bool rates)
+{
+    vec3 e = recall_here(j).xyz - recall_here(j - 1).xyz,
+         free = recall_free(j) - (j > 1 ? recall_free(j - 1) : vec3(0.0));
+    return (rates ? cross(e, free) : cross(free, e)) / max(dot(e, e), 1e-30);
+}
 #endif
-        if (p != p_before) {
-            at = p + l * normalise_or(x - p, link / l);
-        }
-        arc += l;
-        float need = j < int(collide_params.carried) ? -1e30 : needed(a, inside, arc);
-        push_out(at, v, p, l, need, a, tally);
-#if MODE == SEGMENTS
-        segments[a] = at == x && p == p_before ? segment_before(a) : vec4((at - p) / l, l);
+
+// From tip to root: the forces, and the elimination of the links' turns. `rates`: of velocities.
+// `begins`: the first of the rounds.
+void backward(Strand strand, bool rates, bool begins, inout Tally tally)
+{
+    Front front = front_open();
+    vec3 N = vec3(0.0);
+    vec4 here = recall_here(last());
+#if BENDS
+    vec3 turned_here = turned_by(last(), rates);
+#endif
+    for (int j = last(); j >= first_free(); --j) {
+        vec4 before = recall_here(j - 1), kept = recall_force(j);
+        vec3 e = here.xyz - before.xyz, free = recall_free(j);
+        vec3 off = rates ? free : here.xyz - free;
+        Touch touch = Touch(kept.xyz, here.w);
+        Meeting at;
+        if (rates)
+            at = meet_velocity(strand, j, here.xyz, free, recall_surface(j));
+        else
+            at = meet(strand, j, here.xyz, kept.w);
+        if (!rates && begins) tally.found = max(tally.found, -at.gap);
+        touch = touch_begin(at, friction, touch);
+        keep_here(j, here.xyz, touch.state);
+        keep_force(j, touch.force, kept.w);
+        if (!rates) keep_surface(j, vec4(at.normal, at.slip_known ? 1.0 : 0.0));
+        front.A += diagonal(1.0) + touch_stiffness(at, touch);
+        front.p -= off - touch.force;
+        if (!begins && !rates) N += recall_rest(j);
+        float ee = max(dot(e, e), 1e-30), tension = max(-dot(N, e) / ee, 0.0);
+        front.E += diagonal(tension * ee) - tension * outerProduct(e, e);
+#if BENDS
+        float bends = 0.5 * collide_params.bend / ee;
+        vec3 turned_before = j > first_free() ? turned_by(j - 1, rates) : vec3(0.0);
+        vec3 moment = bends * (turned_here - turned_before);
+        front.E += diagonal(bends) + 1e-4 * outerProduct(e, e);
+        front.s -= moment;
+        keep_turn(j, front_eliminate(front, e, diagonal(-bends), diagonal(bends), ee));
+        front.s += moment;
+        turned_here = turned_before;
 #else
-        // where nothing is pushed, what relative.glsl stores stays
-        positions[a] = at == x ? position_before(a) : vec4(at, 0.0);
+        // Turns about the link itself move nothing; their stiffness only keeps the matrix regular.
+        float idle = front.A[0].x + front.A[1].y + front.A[2].z;
+        front.E += idle * outerProduct(e, e);
+        keep_turn(j, front_eliminate(front, e, ZERO3, ZERO3, ee));
 #endif
-#if MODE == PARTICLES
-        velocities[a] = vec4(v, velocity.w);
+        here = before;
+    }
+}
+
+// From root to tip: turns the links. Returns the square of the largest move by a link's own turn,
+// in parts of the distance from the root.
+float forward(bool rates)
+{
+    vec3 dx = vec3(0.0), x_before = recall_here(first_free() - 1).xyz, x_new = x_before;
+#if BENDS
+    vec3 w_before = vec3(0.0);
 #endif
+    float most = 0.0;
+    for (int j = first_free(); j < n; ++j) {
+        vec4 here = recall_here(j);
+        Turn turn = recall_turn(j);
+        vec3 e = here.xyz - x_before, w = turn.v - turn.U * dx;
+#if BENDS
+        w -= turn.W * w_before;
+#endif
+        vec3 z = cross(w, e);
+        float ll = max(dot(e, e), 1e-30), turned = dot(z, z) / ll, l = sqrt(ll);
+        float cut = !rates && turned > FAR_TURN * FAR_TURN ? FAR_TURN * inversesqrt(turned) : 1.0;
+        if (!(turned < 1e30)) z = w = vec3(0.0); // too much for float32
+        z *= cut;
+        dx += z;
+#if BENDS
+        w_before = cut * w;
+#endif
+        vec4 kept = recall_force(j), surface = recall_surface(j);
+        Touch touch =
+            touch_end(Touch(kept.xyz, here.w), surface.xyz, rates || surface.w > 0.5, friction, dx);
+        vec3 free = recall_free(j);
+        keep_force(j, touch.force, kept.w);
+        if (rates) {
+            keep_here(j, here.xyz, touch.state);
+            keep_free(j, free + dx);
+            z *= collide_params.dt;
+            most = max(most, dot(z, z) / (ll + 1.5 * dot(here.xyz, here.xyz)));
+        } else {
+            most = max(most, dot(z, z) / (ll + 1.5 * dot(here.xyz, here.xyz)));
+            vec3 to = e + z;
+            float size = length(to);
+            x_new += e + relative_turn(e, z, l, size, 0.0, to / max(size, 1e-30));
+            keep_here(j, x_new, touch.state);
+            keep_rest(j, here.xyz + dx - free - touch.force);
+        }
+        x_before = here.xyz;
+    }
+    return most;
+}
+
+// Notes the surfaces that the particles touch at x, for the velocities.
+void rest_on(Strand strand, int j, vec3 x, Nearest nearest, float gap, float l)
+{
+    vec3 at = abs(strand.root + x);
+    // Rounding must not decide whether a particle flies into the surface.
+    float rounding = EXACT * (l + max(at.x, max(at.y, at.z)));
+    keep_surface(j, vec4(nearest.normal, gap < rounding ? nearest.moved : -1.0));
+}
+#endif
+
+// Pushes out a particle at `at`, which hangs on p by a link of length l, until it has at least the
+// distance `need`, or, if it `touches`, just that. With friction, of the way that the particle has
+// come along the surface since the step before, a part is undone: friction times the depth. Returns
+// the surface and the gap. `address`: of the stored contact.
+Nearest push_out(inout vec3 at, vec3 p, float l, float need, bool touches, int address,
+                 out float gap)
+{
+    Nearest nearest = nearest_surface(at);
+    gap = nearest.distance - need;
+    if (gap < -EXACT * l || touches) {
+        vec3 aim = at;
+#if MODE == SEGMENTS
+        vec4 before = contact_before(address);
+        vec3 slip = at - before.xyz - surface_displacement(at, nearest.moved);
+        if (before.w == collide_params.stamp_before) aim -= held_back(slip, nearest.normal, -gap);
+#endif
+        vec3 d = normalise_or(aim - p, nearest.normal);
+        gap += dot(p + l * d - at, nearest.normal);
+        for (int round = 0; round < ROUNDS && abs(gap) > EXACT * l; ++round) {
+            d = turned(d, nearest.normal, -gap, l);
+            at = p + l * d;
+            nearest = nearest_surface(at);
+            gap = nearest.distance - need;
+        }
+    }
+    return nearest;
+}
+
+// From root to tip: pushes out what is still too deep, and writes the places.
+void walk(Strand strand, float inside, inout Tally tally, out vec3 tip_moved)
+{
+    vec3 p = strand.root, p_before = p, x_before = p;
+    float arc = 0.0;
+    for (int j = 1; j < n; ++j) {
+        int a = strand.first + j * STRAND_TILE;
+        vec3 x = particle_before(a, x_before), at = x;
+#if SOLVES
+        vec4 here = recall_here(j), force = recall_force(j);
+        if (here.xyz != recall_free(j)) at = strand.root + here.xyz;
+        float need = force.w;
+        bool touching = here.w != FREE;
+#else
+        const bool touching = false;
+#endif
+        vec3 aim = at, link = aim - p_before;
+        float l = length(link), gap;
+        if (p != p_before) at = p + l * normalise_or(aim - p, link / l);
+        arc += l;
+#if !SOLVES
+        float need = j < int(collide_params.carried) ? -1e30 : needed(a, inside, arc);
+#endif
+#if MODE == SEGMENTS
+        float found = need - nearest_surface(at).distance;
+        tally.found = max(tally.found, found);
+        tally.contacts += found > 0.0 ? 1.0 : 0.0;
+#endif
+        Nearest nearest = push_out(at, p, l, need, touching, a, gap);
+        tally.left = max(tally.left, -gap);
 #if MODE != DRAWN
         contacts[a] = vec4(at, collide_params.stamp);
 #endif
-        p_before = x;
-        p = at;
-    }
-    int ends = touched ? 1 : 0;
-    for (int end = 0; end < ends; ++end) {
+#if SOLVES
+        tally.contacts += here.w != FREE ? 1.0 : 0.0;
+        rest_on(strand, j, at - strand.root, nearest, here.w != FREE ? min(gap, 0.0) : gap, l);
+        keep_here(j, at - strand.root, here.w);
+        forces[a] = vec4(force.xyz, here.w);
+#endif
 #if MODE == SEGMENTS
-        vec4 tip = tips[2 * strand.number], v = tips[2 * strand.number + 1];
-        vec3 at = tip.xyz + (p - p_before);
-        push_out(at, v.xyz, strand.root, length(at - strand.root), margin, strand.first, tally);
-        tips[2 * strand.number] = vec4(at, tip.w);
-        tips[2 * strand.number + 1] = v;
-        contacts[strand.first] = vec4(at, collide_params.stamp);
+        if (at != x || p != x_before) segments[a] = vec4((at - p) / l, l);
+#else
+        // where nothing is pushed, what relative.glsl stores stays
+        if (at != x) positions[a] = vec4(at, 0.0);
 #endif
-#if MODE != DRAWN
-        uvec4 count = counts[strand.number];
-        count.zw = floatBitsToUint(max(uintBitsToFloat(count.zw), vec2(tally.found, tally.left)));
-        if (tally.contacts > 0.0)
-            count.xy = uvec2(uint(tally.contacts), uint(collide_params.stamp));
-        counts[strand.number] = count;
-#endif
+        x_before = x, p_before = aim, p = at;
     }
+    tip_moved = p - x_before;
 }
 
-void main()
+#if MODE == SEGMENTS
+// The tip moves with the strand's end, and is pushed out itself.
+void push_tip(Strand strand, vec3 moved)
 {
-    int s = lane_index();
-    n = int(collide_params.vertex_count);
-    if (s >= int(collide_params.strand_count)) return;
-    margin = collide_params.margin;
-    friction = collide_params.friction;
-    open_cones();
+    vec4 tip = tips[2 * strand.number], v = tips[2 * strand.number + 1];
+    vec3 at = tip.xyz + moved;
+    float gap;
+    Nearest nearest =
+        push_out(at, strand.root, length(at - strand.root), margin, false, strand.first, gap);
+    if (gap < EXACT * strand.longest)
+        v.xyz = velocity_after(v.xyz, surface_displacement(at, nearest.moved) / collide_params.dt,
+                               nearest.normal);
+    tips[2 * strand.number] = vec4(at, tip.w);
+    tips[2 * strand.number + 1] = v;
+    contacts[strand.first] = vec4(at, collide_params.stamp);
+}
+#endif
+
+#if MODE != DRAWN
+void write_counts(Strand strand, Tally tally)
+{
+    uvec4 count = counts[strand.number];
+    count.zw = floatBitsToUint(max(uintBitsToFloat(count.zw), vec2(tally.found, tally.left)));
+    if (tally.contacts > 0.0) count.xy = uvec2(uint(tally.contacts), uint(collide_params.stamp));
+    counts[strand.number] = count;
+}
+#endif
+
+#if SOLVES
+void solve(Strand strand, float inside)
+{
+    int places = int(collide_params.rounds), rounds = places + VELOCITY_ROUNDS;
+    bool rates = false;
+    Tally tally = Tally(0.0, 0.0, 0.0);
+    vec3 moved;
+    open_strand(strand, inside);
+    for (int round = 0; round < rounds; ++round) {
+        backward(strand, rates, round == 0 || round == places, tally);
+        float most = forward(rates);
+        bool settled = round > 0 && round != places && most < SETTLED * SETTLED;
+        if (rates && settled) break;
+        if (!rates && (settled || round == places - 1)) {
+            walk(strand, inside, tally, moved);
+            for (int j = 1; j < n; ++j) {
+#if MIDPOINT
+                int a = strand.first + j * STRAND_TILE;
+                vec3 pushed = recall_here(j).xyz - recall_free(j);
+                if (pushed != vec3(0.0))
+                    velocities[a] =
+                        velocity_before(a) + vec4(2.0 / collide_params.dt * pushed, 0.0);
+#endif
+                keep_free(j, vec3(0.0));
+                keep_here(j, recall_here(j).xyz, FREE);
+                keep_force(j, vec3(0.0), 0.0);
+            }
+            round = places - 1, rates = true;
+        }
+    }
+    for (int j = 1; j < n; ++j) {
+        int a = strand.first + j * STRAND_TILE;
+        vec3 change = recall_free(j);
+        if (change != vec3(0.0)) velocities[a] = velocity_before(a) + vec4(change, 0.0);
+    }
+    write_counts(strand, tally);
+}
+#else
+void solve(Strand strand, float inside)
+{
+    vec3 moved;
+    Tally tally = Tally(0.0, 0.0, 0.0);
+    walk(strand, inside, tally, moved);
+#if MODE == SEGMENTS
+    push_tip(strand, moved);
+    write_counts(strand, tally);
+#endif
+}
+#endif
+
+void step_strand(int s)
+{
     int first = particle_address(s, 0, n);
     float longest = collide_params.longest;
 #if MODE != DRAWN
@@ -365,7 +612,20 @@ void main()
 #endif
     Strand strand = Strand(s, first, at, longest);
     float inside;
-    bool touched = touches(strand, inside);
-    walk(strand, inside, touched);
+    if (touches(strand, inside)) solve(strand, inside);
 }
 #endif
+
+void main()
+{
+    n = int(collide_params.vertex_count);
+    margin = collide_params.margin;
+    friction = collide_params.friction;
+    open_cones();
+#if SOLVES
+    keep_base = scratch_base(PLACES, n);
+#endif
+    int s = group_index() * GROUP_SIZE * STRANDS + int(gl_LocalInvocationID.x);
+    for (int i = 0; i < STRANDS && s < int(collide_params.strand_count); ++i, s += GROUP_SIZE)
+        step_strand(s);
+}

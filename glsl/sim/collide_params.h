@@ -21,8 +21,10 @@ UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
     float stamp;        // number of this step ...
     float stamp_before; // ... and of the one before
     float part;         // of the whole step that this (sub-)step is
+    float bend;         // stiffness of bending over that of inertia, m^2 (SolverRecipe.bend)
     uint strand_count;
     uint vertex_count;
     uint carried; // vertices, from the root, that the head carries
+    uint rounds;  // of Newton's method for the places, at most
 }
 END_BLOCK(CollideParams, collide_params);

@@ -41,7 +41,7 @@ vec4 recall_velocity(int address, int j) { return kept_velocity[j - FIRST_KEPT];
 #include "sim/scratch.glsl"
 int keep_base;
 
-void keep_open() { keep_base = scratch_base(2); }
+void keep_open() { keep_base = scratch_base(2, int(step_params.vertex_count)); }
 void keep(int j, vec4 a) { scratch[keep_base + 2 * j * STRAND_TILE] = a; }
 void keep_beside(int j, float b) { scratch[keep_base + (2 * j + 1) * STRAND_TILE].x = b; }
 void keep_aim(int address, int j, vec3 a) { positions[address] = vec4(a, 1.0); }

@@ -7,7 +7,7 @@
 const int PLACES = 7;
 int keep_base;
 
-void keep_open() { keep_base = scratch_base(PLACES); }
+void keep_open() { keep_base = scratch_base(PLACES, int(step_params.vertex_count)); }
 int place(int j, int i) { return keep_base + (PLACES * j + i) * STRAND_TILE; }
 void keep_move(int j, vec4 a) { scratch[place(j, 0)] = a; }
 void keep_goal(int j, vec3 a) { scratch[place(j, 1)].xyz = a; }

@@ -13,7 +13,16 @@ typedef struct Shape {
 } Shape;
 
 // CPU drivers silently end all loops of an invocation after this many iterations.
-enum { MOST_ITERATIONS_ON_CPU = 65535, ROUNDS = 3 };
+enum { MOST_ITERATIONS_ON_CPU = 65535 };
+
+// Rounds of Newton's method (collide.comp), and the fewest that are of use.
+enum { MOST_ROUNDS = 12, FEWEST_ROUNDS = 2, VELOCITY_ROUNDS = 8, PUSH_ROUNDS = 3 };
+
+// vec4 that the pass keeps for a particle (PLACES of glsl/sim/contact.glsl).
+enum { SCRATCH_PLACES = 7, BENDING_PLACES = 10 };
+
+// Strands of a lane on a CPU driver: their scratch memory then stays in the cache.
+enum { MOST_STRANDS_ON_CPU = 8 };
 
 // Cones up to this number are kept in registers: the shader is compiled for their count.
 enum { MOST_IN_REGISTERS = 8 };
@@ -32,6 +41,8 @@ void collision_destroy(Collision *collision)
     free(collision->clearances);
     for (uint32_t i = 0; collision->batches && i < collision->hair->batch_count; ++i) {
         gpu_buffer_destroy(&collision->batches[i].contacts);
+        gpu_buffer_destroy(&collision->batches[i].forces);
+        gpu_buffer_destroy(&collision->batches[i].scratch);
         gpu_buffer_destroy(&collision->batches[i].counts);
     }
     free(collision->batches);
@@ -40,19 +51,41 @@ void collision_destroy(Collision *collision)
     *collision = (Collision){0};
 }
 
-// Each particle is tested against every shape, and each contact again in every round.
-static Result check_loops(const Collision *collision, bool software, Error *error)
+// Turns of all loops for a strand of n vertices: three sweeps and the push test each particle
+// against every shape, a round tests it once more in one of its two sweeps.
+static uint64_t iterations(const Collision *collision, uint64_t n, uint64_t rounds)
 {
-    for (uint32_t i = 0; i < collision->hair->batch_count && software; ++i) {
-        uint64_t n = collision->hair->batches[i].vertex_count;
-        uint64_t most = MOST_ITERATIONS_ON_CPU / n / (ROUNDS + 3);
-        if (collision->colliders->count + (collision->field != NULL) > most)
+    uint64_t shapes = collision->colliders->count + (uint64_t)(collision->field != NULL);
+    bool solves = collision->mode == COLLISION_PARTICLES;
+    uint64_t pushes = shapes * (2 + PUSH_ROUNDS) + 2,
+             sweeps = solves ? rounds * (shapes + 2) + VELOCITY_ROUNDS * 2 + 3 : 0;
+    return n * (pushes + sweeps);
+}
+
+static uint32_t rounds_of(const Collision *collision, uint32_t n)
+{
+    uint32_t rounds = MOST_ROUNDS;
+    while (collision->software && rounds > FEWEST_ROUNDS &&
+           iterations(collision, n, rounds) > MOST_ITERATIONS_ON_CPU)
+        --rounds;
+    return rounds;
+}
+
+// Each particle is tested against every shape, and each contact again in every round.
+static Result check_loops(Collision *collision, Error *error)
+{
+    uint32_t strands = collision->software ? MOST_STRANDS_ON_CPU : 1;
+    for (uint32_t i = 0; i < collision->hair->batch_count && collision->software; ++i) {
+        uint32_t n = collision->hair->batches[i].vertex_count;
+        if (iterations(collision, n, FEWEST_ROUNDS) > MOST_ITERATIONS_ON_CPU)
             return error_set(error, RESULT_USAGE,
-                             "colliders: %u for strands of %u vertices: expected at most "
-                             "%llu (more exceed the loop limit of a CPU driver)",
-                             collision->colliders->count, collision->hair->batches[i].vertex_count,
-                             (unsigned long long)most);
+                             "colliders: %u for strands of %u vertices: expected fewer (more "
+                             "exceed the loop limit of a CPU driver)",
+                             collision->colliders->count, n);
+        uint64_t fit = MOST_ITERATIONS_ON_CPU / iterations(collision, n, MOST_ROUNDS);
+        if (fit < strands) strands = fit ? (uint32_t)fit : 1;
     }
+    collision->strands_per_lane = strands;
     return RESULT_OK;
 }
 
@@ -70,6 +103,18 @@ static Result create_batches(Collision *collision, const GpuLimits *limits, Erro
                               error));
         gpu_buffer_clear(&batch->contacts, 0);
         gpu_buffer_clear(&batch->counts, 0);
+        if (collision->mode != COLLISION_PARTICLES) continue;
+        TRY(gpu_buffer_create(&batch->forces, limits, "forces of contacts",
+                              slots * hair->batches[i].vertex_count * 16, NULL, GL_RGBA32F, error));
+        uint64_t lanes = (uint64_t)limits->sizes.strands,
+                 per_group = lanes * collision->strands_per_lane,
+                 groups = (hair->batches[i].strand_count + per_group - 1) / per_group,
+                 tiles = (groups * lanes + STRAND_TILE - 1) / STRAND_TILE;
+        TRY(gpu_buffer_create(&batch->scratch, limits, "scratch memory of contacts",
+                              (int64_t)(tiles * STRAND_TILE * hair->batches[i].vertex_count *
+                                        (collision->bend ? BENDING_PLACES : SCRATCH_PLACES) * 16),
+                              NULL, GL_RGBA32F, error));
+        gpu_buffer_clear(&batch->forces, 0);
     }
     return RESULT_OK;
 }
@@ -88,6 +133,9 @@ static Result create_pass(Collision *collision, const Gpu *gpu, CollisionMode mo
         {"CONES", cones <= MOST_IN_REGISTERS ? cones : 0},
         {"FIELD", collision->field != NULL},
         {"BOUND", collision->frames != NULL},
+        {"STRANDS", (int)collision->strands_per_lane},
+        {"BENDS", collision->bend != NULL},
+        {"MIDPOINT", collision->midpoint},
         COLLIDERS(COLLIDER_NONE, HAS){0}};
     return step_pass_create(&collision->pass, gpu, "sim/collide.comp", defines, error);
 }
@@ -124,7 +172,7 @@ static Result find_clearances(Collision *collision, const SolverSetup *setup, Er
 }
 
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
-                        uint32_t carried, Error *error)
+                        const SolverRecipe *recipe, Error *error)
 {
     *collision = (Collision){0};
     static const Colliders none;
@@ -138,9 +186,17 @@ Result collision_create(Collision *collision, const SolverSetup *setup, Collisio
         .field = setup->field,
         .frames = setup->frames,
         .mode = mode,
-        .carried = carried,
+        .carried = !recipe                      ? 1
+                   : setup->params->clamped > 1 ? 2
+                                                : recipe->carried,
+        .bend = recipe && mode == COLLISION_PARTICLES && section_is_elastic(setup->params) &&
+                        setup->params->youngs_modulus > 0
+                    ? recipe->bend
+                    : NULL,
+        .midpoint = recipe && recipe->midpoint,
+        .software = setup->gpu->software,
     };
-    Result result = check_loops(collision, setup->gpu->software, error);
+    Result result = check_loops(collision, error);
     THEN(result,
          gpu_buffer_create(&collision->shapes, &setup->gpu->limits, "colliders",
                            (int64_t)(colliders->count * sizeof(Shape)), NULL, GL_RGBA32F, error));
@@ -204,6 +260,7 @@ static CollideParams step_params(const Collision *collision, const SolverStep *s
         .margin = collision->params->collision_margin,
         .friction = collision->params->friction,
         .longest = collision->bounds->longest,
+        .bend = collision->bend ? collision->bend(collision->params, step->dt) : 0,
     };
     if (collision->field) {
         memcpy(params.field_low, collision->field->low, sizeof collision->field->low);
@@ -255,6 +312,7 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
     collision->step.strand_count = hair->strand_count;
     collision->step.vertex_count = hair->vertex_count;
     collision->step.carried = hair->held > collision->carried ? hair->held : collision->carried;
+    collision->step.rounds = rounds_of(collision, hair->vertex_count);
     if (hair->rest.texture) gpu_buffer_bind_texture(&hair->rest, BIND_REST);
     gpu_buffer_bind_texture(&hair->position, BIND_POSITION);
     gpu_buffer_bind_storage(&hair->position, BIND_POSITION_OUT);
@@ -274,7 +332,15 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
         gpu_buffer_bind_storage(&collision->batches[batch].contacts, BIND_CONTACTS);
         gpu_buffer_bind_storage(&collision->batches[batch].counts, BIND_CONTACT_COUNTS);
     }
-    step_pass_run(&collision->pass, &collision->step, sizeof collision->step, hair->strand_count);
+    if (collision->batches && collision->mode == COLLISION_PARTICLES) {
+        gpu_buffer_bind_texture(&collision->batches[batch].forces, BIND_CONTACT_FORCES_BEFORE);
+        gpu_buffer_bind_storage(&collision->batches[batch].forces, BIND_CONTACT_FORCES);
+        gpu_buffer_bind_texture(&collision->batches[batch].scratch, BIND_SCRATCH_BEFORE);
+        gpu_buffer_bind_storage(&collision->batches[batch].scratch, BIND_SCRATCH);
+    }
+    step_pass_run(&collision->pass, &collision->step, sizeof collision->step,
+                  (hair->strand_count + collision->strands_per_lane - 1) /
+                      collision->strands_per_lane);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -286,9 +352,9 @@ void collision_push_drawn(Collision *collision, const HeadPose *head)
         collision_push(collision, i, NULL, NULL);
 }
 
-const GpuBuffer *collision_memory(const Collision *collision, uint32_t batch)
+const CollisionBatch *collision_memory(const Collision *collision, uint32_t batch)
 {
-    return collision->batches ? &collision->batches[batch].contacts : NULL;
+    return collision->batches ? &collision->batches[batch] : NULL;
 }
 
 static float float_of_bits(uint32_t bits)

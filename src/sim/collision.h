@@ -17,7 +17,10 @@ typedef enum CollisionMode {
 
 typedef struct CollisionBatch {
     GpuBuffer contacts; // vec4 a particle: its position (xyz) at the end of step number w
-    GpuBuffer counts;   // uvec4 a strand: see collide.comp
+    // With COLLISION_PARTICLES:
+    GpuBuffer forces;  // vec4 a particle: see collide.comp
+    GpuBuffer scratch; // of the lanes: glsl/sim/scratch.glsl
+    GpuBuffer counts;  // uvec4 a strand: see collide.comp
 } CollisionBatch;
 
 // A zeroed struct is a pass that does nothing.
@@ -30,6 +33,10 @@ typedef struct Collision {
     const GpuBuffer *frames;    // of bound strands (bound.h); may be NULL
     CollisionMode mode;
     uint32_t carried; // vertices, from the root, that the head carries
+    float (*bend)(const SectionParams *params, double dt); // SolverRecipe.bend
+    bool midpoint;                                         // SolverRecipe.midpoint
+    uint32_t strands_per_lane;
+    bool software;
     StepPass pass;
     GpuBuffer shapes;
     CollisionBatch *batches; // [hair->batch_count]; NULL with COLLISION_DRAWN
@@ -42,9 +49,10 @@ typedef struct Collision {
 // except in mode COLLISION_SEGMENTS. The hair's positions must then be those of the groom, with
 // the head at the origin.
 // Mode COLLISION_DRAWN changes no velocities and has no friction.
+// `recipe`: of the solver; NULL: the hair only follows other hair.
 // RESULT_USAGE for more colliders than the loops of a CPU driver can take.
 Result collision_create(Collision *collision, const SolverSetup *setup, CollisionMode mode,
-                        uint32_t carried, Error *error);
+                        const SolverRecipe *recipe, Error *error);
 void collision_destroy(Collision *collision);
 
 // Places the colliders for the end of sub-step `part` (1 .. `parts`) of a step; step->head is the
@@ -60,8 +68,8 @@ void collision_push(Collision *collision, uint32_t batch, const GpuBuffer *state
 // collision_begin and collision_push for all batches, for COLLISION_DRAWN.
 void collision_push_drawn(Collision *collision, const HeadPose *head);
 
-// The contacts that batch `batch` passes on to the next step (SOLVER_POINTS); NULL: none.
-const GpuBuffer *collision_memory(const Collision *collision, uint32_t batch);
+// What batch `batch` passes on to the next step; NULL: nothing. Valid as long as the collision.
+const CollisionBatch *collision_memory(const Collision *collision, uint32_t batch);
 
 // Adds contacts and depths to `report`. Waits for the GPU.
 void collision_report(const Collision *collision, SolverReport *report);

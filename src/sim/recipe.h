@@ -99,6 +99,11 @@ typedef struct SolverRecipe {
     // of the difference of gravity that the others apply (solver.c). RESULT_FAILED when memory is
     // short.
     Result (*balance)(RestBatch *batch, Error *error);
+    // For strands that resist bending: B/(rho A) by which a step's end is held back, over the
+    // stiffness 2/dt^2 of inertia, m^4. Contacts respect it (collide.comp). NULL: 0.
+    float (*bend)(const SectionParams *params, double dt);
+    // The velocity at a step's end is 2 u/dt - v, for contacts (MIDPOINT of collide.comp).
+    bool midpoint;
     // The shader counts strands that it slows down (a uint at BIND_TIPS).
     bool counts;
     // Number of equal sub-steps that a step needs for the longest strand; NULL: 1.

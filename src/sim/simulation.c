@@ -44,7 +44,7 @@ static Result create_follow_collision(SimulationSection *section, const SolverSe
     drawn.bounds = &section->hair;
     if (!drawn.hair->batch_count || strcmp(setup->params->algo, "none") == 0) return RESULT_OK;
     follow_write(&section->follow, &origin); // positions in the groom, for the clearances
-    return collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, 1, error);
+    return collision_create(&section->follow_collision, &drawn, COLLISION_DRAWN, NULL, error);
 }
 
 static void write_followers(const Simulation *simulation, SimulationSection *section)

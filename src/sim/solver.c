@@ -345,13 +345,12 @@ static Result build(SolverState *state, const SolverSetup *setup, Error *error)
         TRY(along_create(&state->along, recipe, state->hair, state->programs.leads, state->params,
                          &setup->gpu->limits, error));
     if (segments) along_fill(&state->along, &(SolverStep){.dt = 1}, state->own);
-    uint32_t carried = setup->params->clamped > 1 ? 2 : recipe->carried;
     // With a balanced groom the simulated strands hang down through the head, so only the drawn
     // positions collide.
     if (!segments || !is_balanced(state))
         TRY(collision_create(&state->collision, setup,
-                             segments ? COLLISION_SEGMENTS : COLLISION_PARTICLES, carried, error));
-    if (segments) TRY(collision_create(&state->drawn, setup, COLLISION_DRAWN, carried, error));
+                             segments ? COLLISION_SEGMENTS : COLLISION_PARTICLES, recipe, error));
+    if (segments) TRY(collision_create(&state->drawn, setup, COLLISION_DRAWN, recipe, error));
     for (uint32_t i = 0; i < state->hair->batch_count; ++i)
         TRY(create_batch(state, i, setup, error));
     return RESULT_OK;
@@ -407,9 +406,11 @@ int solver_buffers(const Solver *solver, uint32_t batch, SolverBuffer buffers[SO
         buffers[0] = (SolverBuffer){&state->hair->batches[batch].position, SOLVER_POINTS};
         buffers[1] = (SolverBuffer){&own->state, SOLVER_VELOCITIES};
     }
-    const GpuBuffer *contacts = collision_memory(&state->collision, batch);
-    if (contacts) buffers[2] = (SolverBuffer){contacts, SOLVER_POINTS};
-    return contacts ? 3 : 2;
+    const CollisionBatch *contacts = collision_memory(&state->collision, batch);
+    if (!contacts) return 2;
+    buffers[2] = (SolverBuffer){&contacts->contacts, SOLVER_POINTS};
+    buffers[3] = (SolverBuffer){&contacts->forces, SOLVER_DIRECTIONS};
+    return contacts->forces.buffer ? 4 : 3;
 }
 
 // The force that holds the groom against gravity fades with the pull towards the style; otherwise

@@ -11,7 +11,7 @@ typedef struct SolverType SolverType;
 typedef enum SolverBufferKind {
     SOLVER_POINTS,     // m, in the world
     SOLVER_VELOCITIES, // m/s, of the points in the preceding buffer of the list
-    SOLVER_DIRECTIONS, // unit vectors
+    SOLVER_DIRECTIONS, // vectors that only turn with the head
     SOLVER_TIPS,       // alternately a point and its velocity
 } SolverBufferKind;
 

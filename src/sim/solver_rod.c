@@ -43,6 +43,11 @@ static void fill(void *block, StepParams *uniforms, const SolverStep *step,
     };
 }
 
+static float contact_bend(const SectionParams *params, double dt)
+{
+    return (float)((double)bending_share(params, dt) * rod_stiffness(params) * dt * dt / 2);
+}
+
 // Stiffness and mass are relative to the cross section of the mean radius.
 static void along(float texel[4], const void *block, const void *mean, const SectionParams *there)
 {
@@ -173,6 +178,8 @@ static const SolverRecipe FIBRE = {
     .fill = fill,
     .define = define,
     .along = along,
+    .bend = contact_bend,
+    .midpoint = true,
     .counts = true,
     .balance = balance_groom,
 };
@@ -187,6 +194,7 @@ static const SolverRecipe PARTICLES = {
     .fill = fill,
     .define = define,
     .along = along,
+    .midpoint = true,
     .counts = true,
 };
 

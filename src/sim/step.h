@@ -66,7 +66,7 @@ void step_spring_along(float texel[4], const void *block, const void *mean,
 // style/(1 - style), the factor of stiffnesses: 1 for style 0.5.
 float step_style_odds(const SectionParams *params);
 
-enum { STEP_OWN_DEFINES = 8 };
+enum { STEP_OWN_DEFINES = 12 };
 
 // A compute program that works on strands, one strand a lane. A zeroed struct may be destroyed.
 typedef struct StepPass {

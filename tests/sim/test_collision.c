@@ -351,7 +351,7 @@ static void the_uniform_block_lies_as_c_has_it(void **state)
                                .hair = &fixture.hair,
                                .params = &fixture.params,
                                .colliders = &fixture.colliders};
-    assert_int_equal(collision_create(&collision, &setup, COLLISION_SEGMENTS, 1, &(Error){{0}}),
+    assert_int_equal(collision_create(&collision, &setup, COLLISION_SEGMENTS, NULL, &(Error){{0}}),
                      RESULT_OK);
 #define ASSERT_OFFSET(member)                                                                      \
     fixture_assert_offset(collision.pass.program, "CollideParams." #member,                        \
