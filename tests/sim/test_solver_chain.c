@@ -35,7 +35,7 @@ static void strands_through_memory_equal_the_twin_too(void **state)
     (void)state;
     static const TwinCase cases[] = {
         {17, 60, 4, 0, 600, 3 * 7.6e-7, NULL},
-        {32, 60, 4, 0, 600, 6e-4, NULL},
+        {32, 60, 4, 0, 1200, 6e-4, NULL}, // chaotic until it hangs
         {32, 60, 4, 0.5, 30, 3 * 4.9e-7, NULL},
         {64, 60, 4, 0.5, 8, 3 * 6.3e-6, NULL},
     };
