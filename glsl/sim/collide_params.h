@@ -3,6 +3,12 @@
 #include "common/collider_table.h"
 #include "common/shared.h"
 
+#define CONTACT_VELOCITY_ROUNDS 8 // of Newton's method for the velocities, at most
+#define CONTACT_PUSH_ROUNDS     3 // to push a particle out
+// vec4 that are kept for a particle, and if strands bend (contact.glsl).
+#define CONTACT_PLACES         7
+#define CONTACT_BENDING_PLACES 10
+
 UNIFORM_BLOCK(CollideParams, collide_params, BIND_STEP)
 {
     vec4 head_rotation;        // quaternion x y z w: the head's frame -> world, at the step's end

@@ -72,9 +72,9 @@ mat3 touch_stiffness(Meeting at, Touch touch)
 
 // In scratch memory, for each particle.
 #if BENDS
-const int PLACES = 10;
+const int PLACES = CONTACT_BENDING_PLACES;
 #else
-const int PLACES = 7;
+const int PLACES = CONTACT_PLACES;
 #endif
 int keep_base = 0;
 

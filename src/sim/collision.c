@@ -16,10 +16,7 @@ typedef struct Shape {
 enum { MOST_ITERATIONS_ON_CPU = 65535 };
 
 // Rounds of Newton's method (collide.comp), and the fewest that are of use.
-enum { MOST_ROUNDS = 12, FEWEST_ROUNDS = 2, VELOCITY_ROUNDS = 8, PUSH_ROUNDS = 3 };
-
-// vec4 that the pass keeps for a particle (PLACES of glsl/sim/contact.glsl).
-enum { SCRATCH_PLACES = 7, BENDING_PLACES = 10 };
+enum { MOST_ROUNDS = 12, FEWEST_ROUNDS = 2 };
 
 // Strands of a lane on a CPU driver: their scratch memory then stays in the cache.
 enum { MOST_STRANDS_ON_CPU = 8 };
@@ -57,8 +54,8 @@ static uint64_t iterations(const Collision *collision, uint64_t n, uint64_t roun
 {
     uint64_t shapes = collision->colliders->count + (uint64_t)(collision->field != NULL);
     bool solves = collision->mode == COLLISION_PARTICLES;
-    uint64_t pushes = shapes * (2 + PUSH_ROUNDS) + 2,
-             sweeps = solves ? rounds * (shapes + 2) + VELOCITY_ROUNDS * 2 + 3 : 0;
+    uint64_t pushes = shapes * (2 + CONTACT_PUSH_ROUNDS) + 2,
+             sweeps = solves ? rounds * (shapes + 2) + CONTACT_VELOCITY_ROUNDS * 2 + 3 : 0;
     return n * (pushes + sweeps);
 }
 
@@ -71,7 +68,7 @@ static uint32_t rounds_of(const Collision *collision, uint32_t n)
     return rounds;
 }
 
-// Each particle is tested against every shape, and each contact again in every round.
+// Also decides how many strands a lane steps.
 static Result check_loops(Collision *collision, Error *error)
 {
     uint32_t strands = collision->software ? MOST_STRANDS_ON_CPU : 1;
@@ -110,10 +107,11 @@ static Result create_batches(Collision *collision, const GpuLimits *limits, Erro
                  per_group = lanes * collision->strands_per_lane,
                  groups = (hair->batches[i].strand_count + per_group - 1) / per_group,
                  tiles = (groups * lanes + STRAND_TILE - 1) / STRAND_TILE;
-        TRY(gpu_buffer_create(&batch->scratch, limits, "scratch memory of contacts",
-                              (int64_t)(tiles * STRAND_TILE * hair->batches[i].vertex_count *
-                                        (collision->bend ? BENDING_PLACES : SCRATCH_PLACES) * 16),
-                              NULL, GL_RGBA32F, error));
+        TRY(gpu_buffer_create(
+            &batch->scratch, limits, "scratch memory of contacts",
+            (int64_t)(tiles * STRAND_TILE * hair->batches[i].vertex_count *
+                      (collision->bend ? CONTACT_BENDING_PLACES : CONTACT_PLACES) * 16),
+            NULL, GL_RGBA32F, error));
         gpu_buffer_clear(&batch->forces, 0);
     }
     return RESULT_OK;
