@@ -104,3 +104,17 @@ void decimal_format_double(double value, char *text, size_t size)
         if (strtod(text, NULL) == value) return;
     }
 }
+
+static const char *skip_blanks(const char *text)
+{
+    return text + strspn(text, " \t");
+}
+
+const char *decimal_read(const char *text, double *number)
+{
+    text = skip_blanks(text);
+    size_t length = strspn(text, "0123456789+-.eE");
+    char *end;
+    *number = strtod(text, &end);
+    return end == text || end > text + length ? NULL : skip_blanks(end);
+}

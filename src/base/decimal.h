@@ -15,3 +15,7 @@ void decimal_format(float value, char *text, size_t size);
 
 // The same for a double; 32 suffice.
 void decimal_format_double(double value, char *text, size_t size);
+
+// Reads a decimal number, possibly with blanks around it. Returns the rest of the text, or NULL.
+// strtod alone would also accept hexadecimal numbers, infinity and NaN.
+const char *decimal_read(const char *text, double *number);

@@ -266,23 +266,6 @@ static Result refuse(const Input *input, const char *nearest)
                      expected, nearest);
 }
 
-static const char *skip_blanks(const char *text)
-{
-    return text + strspn(text, " \t");
-}
-
-// Parses a decimal number, possibly with blanks around it. Returns the rest of the text, or NULL.
-// strtod alone would also accept hexadecimal numbers, infinity and NaN.
-static const char *read_number(const char *text, double *number)
-{
-    text = skip_blanks(text);
-    size_t length = strspn(text, "0123456789+-.eE");
-    char *end;
-    *number = strtod(text, &end);
-    if (end == text || end > text + length) return NULL;
-    return skip_blanks(end);
-}
-
 // Integers also go through double, which represents every integer in any range.
 static Result read_numbers(const Input *input, const struct Form *form, double *numbers)
 {
@@ -291,7 +274,7 @@ static Result read_numbers(const Input *input, const struct Form *form, double *
     if (form->type != NUMBER_FLOAT && strpbrk(at, ".eE")) return refuse(input, NULL);
     for (int i = 0; i < form->count; i++) {
         if (i > 0 && *at++ != form->separator) return refuse(input, NULL);
-        at = read_number(at, &numbers[i]);
+        at = decimal_read(at, &numbers[i]);
         if (!at) return refuse(input, NULL);
     }
     if (*at) return refuse(input, NULL);

@@ -7,21 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *skip_blanks(const char *text)
-{
-    return text + strspn(text, " \t");
-}
-
-// Unlike strtod alone it takes no hexadecimal numbers, infinities and NaNs.
-static const char *read_number(const char *text, double *number)
-{
-    text = skip_blanks(text);
-    size_t length = strspn(text, "0123456789+-.eE");
-    char *end;
-    *number = strtod(text, &end);
-    return end == text || end > text + length ? NULL : skip_blanks(end);
-}
-
 double rate_snap(double rate)
 {
     static const int rates[] = {24, 30, 48, 60, 120};
@@ -36,9 +21,9 @@ double rate_snap(double rate)
 bool rate_parse(const char *text, double *rate)
 {
     double number, divisor = 1;
-    const char *at = read_number(text, &number);
+    const char *at = decimal_read(text, &number);
     bool fraction = at && *at == '/';
-    if (fraction) at = read_number(at + 1, &divisor);
+    if (fraction) at = decimal_read(at + 1, &divisor);
     if (!at || *at || !(divisor > 0)) return false;
     number = fraction ? number / divisor : rate_snap(number);
     *rate = number;

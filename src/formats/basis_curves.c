@@ -217,18 +217,24 @@ static void value_at(const BasisCurves *curves, int array, Rate rate, uint32_t s
     }
 }
 
+// How often the file has values of an array. RATES if it has none, after an error, or if they do
+// not fit, which is noted.
+static Rate rate_of(const Reader *reader, BasisCurves *curves, int array)
+{
+    const UsdValues *values = &curves->array[array];
+    if (!values->line || values->count == 0 || !reader_ok(reader)) return RATES;
+    Counts counts = count_rates(curves);
+    Rate rate = find_rate(curves, array, &counts);
+    if (rate == RATES) curves->unfit |= 1u << array;
+    return rate;
+}
+
 // Values for each vertex. NULL if the file has none, if they do not fit, or after an error.
 static float *spread(Reader *reader, BasisCurves *curves, int array, const Strands *strands)
 {
-    const UsdValues *values = &curves->array[array];
     uint32_t width = CURVES_WIDTHS[array];
-    if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
-    Counts counts = count_rates(curves);
-    Rate rate = find_rate(curves, array, &counts);
-    if (rate == RATES) {
-        curves->unfit |= 1u << array;
-        return NULL;
-    }
+    Rate rate = rate_of(reader, curves, array);
+    if (rate == RATES) return NULL;
     float *to = reader_malloc(reader, (size_t)strands->vertex_count * width, sizeof *to);
     uint64_t start[RATES] = {0};
     for (uint32_t s = 0; to && s < strands->strand_count; ++s) {
@@ -249,13 +255,8 @@ static float *spread_strands(Reader *reader, BasisCurves *curves, int array, con
 {
     const UsdValues *values = &curves->array[array];
     uint32_t width = CURVES_WIDTHS[array];
-    if (!values->line || values->count == 0 || !reader_ok(reader)) return NULL;
-    Counts counts = count_rates(curves);
-    Rate rate = find_rate(curves, array, &counts);
-    if (rate == RATES) {
-        curves->unfit |= 1u << array;
-        return NULL;
-    }
+    Rate rate = rate_of(reader, curves, array);
+    if (rate == RATES) return NULL;
     float *to = reader_malloc(reader, (size_t)strands->strand_count * width, sizeof *to);
     size_t at = 0;
     for (uint32_t s = 0; to && s < strands->strand_count; ++s) {
